@@ -42,8 +42,8 @@ if TYPE_CHECKING:
     from .interpolation.api import interpolate as interpolate
     from .interpolation.api import interpolate_many as interpolate_many
     from .interpolation.api import interpolate_vertex as interpolate_vertex
-    from .mending.mend import Change as Change
     from .mending.mend import mend as mend
+    from .mending.state import Change as Change
     from .notebook import plot as plot
     from .outlines.masters import DesignAxis as DesignAxis
     from .outlines.masters import MasterContour as MasterContour
@@ -87,7 +87,8 @@ _HOMES = {
     ".fitting.options": "Options",
     ".fitting.results": "ContourResult GlyphResult Measures",
     ".interpolation.api": "Interpolation interpolate interpolate_many interpolate_vertex",
-    ".mending.mend": "Change mend",
+    ".mending.mend": "mend",
+    ".mending.state": "Change",
     ".notebook": "plot",
     ".outlines.masters": "DesignAxis MasterContour Masters",
     ".outlines.outline": "Contour FontMetrics Outline",

@@ -58,7 +58,7 @@ KINDS = (
     Kind("turn", "INFO", "°", "turns by {value}, of two lines or beside a short segment or handle"),
 )
 
-MENDED = ("kink", "handles", "extremum", "unlevel", "slanted", "repeated", "straight", "short", "direction")
+MENDED = ("kink", "jump", "handles", "extremum", "unlevel", "slanted", "repeated", "straight", "short", "direction")
 """Names of the kinds that :func:`glyphspline.mend` mends, in this order."""
 
 MENDED_UNASKED = ("kink",)

@@ -21,7 +21,7 @@ from .running import chosen
 from .tables import plain
 
 if TYPE_CHECKING:
-    from ..mending.mend import Change
+    from ..mending.state import Change
     from ..readers import Font
     from ..readers.designspace import Designspace
     from ..readers.ufo import Ufo

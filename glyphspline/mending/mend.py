@@ -21,59 +21,21 @@ from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .fewer import EDITED, Edited
-from .joints import controls_of, moves, obstacle, points_of
+from .kinks import smoothed
 from .shapes import shape_moves, starts_of
-from .state import Design, Into, Key, State, distances
+from .state import Change, Design, Into, Key, State, distances
 
 PER_EM = 1e-3
 """The tolerance as a share of the em, unless another is given."""
-
-GOOD = 0.25
-"""Share of its turn that a mended joint may keep: where handles are short the grid is coarse."""
 
 TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
 
 
+SMOOTHED = ("kink", "jump")
+"""Kinds of joints, of which several are mended together."""
+
 ANYWHERE = Into()
-
-
-@dataclass(frozen=True)
-class Change:
-    """What became of a finding.
-
-    Attributes:
-        glyph, gid: which glyph. kind: of the finding. contour, segment: as ``check`` numbers them.
-        point: where the segment begins in the default master, as it was.
-        before: the finding's largest value at any location, in its unit. after: of a kink, the largest turn when it is
-            mended; None of other kinds, of which nothing is left, and if it is left.
-        moved: the largest move of a point in any master; 0.0 if it is left, or if points only went.
-        moves: master, number of the point in the contour, old and new place of every point that moved.
-        gone: number of points that went.
-        distance: certified bound of how far the curves beside it moved, at any location; None if it is left.
-        why: the reason why it is left, or None. needs: the distance that it would take, if only the tolerance is
-            against it.
-    """
-
-    glyph: str
-    gid: int
-    kind: str
-    contour: int
-    segment: int
-    point: tuple[float, float]
-    before: float
-    after: float | None = None
-    moved: float = 0.0
-    moves: tuple[tuple[int, int, tuple[float, float], tuple[float, float]], ...] = ()
-    gone: int = 0
-    distance: float | None = None
-    why: str | None = None
-    needs: float | None = None
-
-    @property
-    def is_mended(self) -> bool:
-        """Whether points moved, so that it is no longer found."""
-        return self.why is None
 
 
 @overload
@@ -140,7 +102,7 @@ def mended(
     state = State.of(masters, thresholds, outer)
     if not any(state.values[kind] for kind in kinds):
         return masters, []
-    glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds.kink, into.step), thresholds, outer, into)
+    glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds, into.step), thresholds, outer, into)
     new, changes = masters, []
     for kind in MENDED:
         if kind in kinds and state.values[kind] and kind not in EDITED:
@@ -170,8 +132,16 @@ class _Glyph:
         x, y = contour.points[0, starts_of(contour)[segment]].tolist()
         return Change(self.masters.name, self.masters.gid, kind, c, segment, (x, y), value)
 
+    def checked(self, glyph: Masters) -> tuple[Masters, State]:
+        """What the file makes of a glyph, and what is found in it."""
+        stored = glyph if self.into.stored is None else self.into.stored(glyph)
+        return stored, State.of(stored, self.thresholds, self.outer)
+
     def moved(self, now: Masters, before: State, kind: str) -> tuple[Masters, State, list[Change]]:
         """Mend the findings of a kind by moves: the glyph, what is found in it then, and what became of them."""
+        if kind in SMOOTHED:
+            changes = {place: self.change(kind, place, value) for place, value in before.values[kind].items()}
+            return smoothed(self.masters, now, before, changes, kind, self.design, self.checked, self.into.fixed)
         faults = []
         for place, value in before.values[kind].items():
             old, own = self.masters.contours[place[0]], now.contours[place[0]]
@@ -181,10 +151,7 @@ class _Glyph:
         while True:
             if not any(fault.is_moved for fault in faults):
                 return now, before, [fault.left() for fault in faults]
-            trial = _with(now, faults)
-            if self.into.stored is not None:
-                trial = self.into.stored(trial)
-            after = State.of(trial, self.thresholds, self.outer)
+            trial, after = self.checked(_with(now, faults))
             beyond = _beyond(self.masters, trial, faults, self.design)
             if not _advance(faults, before, after, beyond, kind):
                 return trial, after, [fault.result() for fault in faults]
@@ -287,9 +254,7 @@ class _Fault:
     ) -> _Fault:
         """Find the moves that are within the tolerance of the contour ``origin``; in masters nodes come last."""
         fault = cls(change, contour, [], fixed)
-        if fixed is None and change.kind == "kink":
-            fault._kinks(origin, design)
-        elif fixed is None:
+        if fixed is None:
             for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
                 bound = float(distances(origin, _moved(contour, numbers, places), design).max())
                 fault.tries.append(_Try(numbers, places, bound, None))
@@ -299,27 +264,6 @@ class _Fault:
             fault.why, fault.needs = "is beyond the tolerance", min(each.distance for each in fault.tries)
         fault.tries = within[:TRIES]
         return fault
-
-    def _kinks(self, origin: MasterContour, design: Design) -> None:
-        """The moves of a joint that mend it."""
-        contour, segment = self.old, self.change.segment
-        self.why = obstacle(contour, segment)
-        every = {} if self.why else {new.tobytes(): new for new in moves(contour, segment, design.step)}
-        if not every:
-            return
-        numbers, old = points_of(contour, segment)
-        new = np.stack([*every.values()])
-        turns = design.largest_turns(controls_of(contour, segment, new))
-        for places, turn in zip(new, turns.tolist(), strict=True):
-            if turn <= max(design.kink, GOOD * self.change.before):
-                bound = float(distances(origin, _moved(contour, numbers, places), design).max())
-                self.tries.append(_Try(numbers, places, bound, turn))
-        several = len(old) > 1
-        node = [bool((each.places[:, 1] != old[:, 1]).any()) for each in self.tries]
-        order = sorted(
-            range(len(node)), key=lambda k: ((self.tries[k].turn or 0.0) >= design.kink, several and node[k])
-        )
-        self.tries = [self.tries[k] for k in order]
 
     @property
     def is_moved(self) -> bool:

@@ -13,7 +13,7 @@ from ..checks.check import measured
 from ..checks.finding import Measured
 from ..checks.kinds import KINDS, Thresholds
 from ..checks.on_axes import OF_CONTOURS, on_axes
-from ..checks.turns import largest_turns, turns_of
+from ..checks.turns import joint_controls, largest_turns, turns_of
 from ..curves.pairing import SHARPNESS, pair_instances
 from ..outlines.contour_arrays import offsets_of
 from ..outlines.masters import MasterContour, Masters
@@ -25,9 +25,53 @@ STEPS = 8
 DIGITS = 3
 """Decimals of coordinates at most."""
 
+INSIDE = 4
+"""Parts of an interval of an axis between two ticks, at whose ends turns are bounded."""
+
+SMOOTH = 12.0
+"""Degrees from which a joint ends an arc, whose curves may slip along each other."""
+
 
 Key = tuple[int, int, int, int]
 """Kind, contour, segment and other contour of a finding; those of whole contours have no segment, -1."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """What became of a finding.
+
+    Attributes:
+        glyph, gid: which glyph. kind: of the finding. contour, segment: as ``check`` numbers them.
+        point: where the segment begins in the default master, as it was.
+        before: the finding's largest value at any location, in its unit. after: of a kink, the largest turn when it is
+            mended; None of other kinds, of which nothing is left, and if it is left.
+        moved: the largest move of a point in any master; 0.0 if it is left, or if points only went.
+        moves: master, number of the point in the contour, old and new place of every point that moved.
+        gone: number of points that went.
+        distance: certified bound of how far the curves beside it moved, at any location; None if it is left.
+        why: the reason why it is left, or None. needs: the distance that it would take, if only the tolerance is
+            against it.
+    """
+
+    glyph: str
+    gid: int
+    kind: str
+    contour: int
+    segment: int
+    point: tuple[float, float]
+    before: float
+    after: float | None = None
+    moved: float = 0.0
+    moves: tuple[tuple[int, int, tuple[float, float], tuple[float, float]], ...] = ()
+    gone: int = 0
+    distance: float | None = None
+    why: str | None = None
+    needs: float | None = None
+
+    @property
+    def is_mended(self) -> bool:
+        """Whether points moved, so that it is no longer found."""
+        return self.why is None
 
 
 class State:
@@ -77,29 +121,35 @@ class Design(NamedTuple):
 
     Attributes:
         corners: (V, K) weights of the masters, between which every location lies. ticks: of each axis (T, K), between
-            which weights are linear along it. step: of the grid of points, whole units or the source's decimals.
-        tolerance: in font units. kink: threshold in degrees.
+            which weights are linear along it. places: (L, K) the masters and places on the axes and on pairs of them.
+        step: of the grid of points, whole units or the source's decimals. tolerance: in font units.
+        em: font units in an em. thresholds: of findings.
     """
 
     corners: FloatArray
     ticks: list[FloatArray]
+    places: FloatArray
     step: float
     tolerance: float
-    kink: float
+    em: float
+    thresholds: Thresholds
 
     @classmethod
-    def of(cls, masters: Masters, tolerance: float, kink: float, step: float | None) -> Design:
+    def of(cls, masters: Masters, tolerance: float, thresholds: Thresholds, step: float | None) -> Design:
         """Look at a glyph's axes, and at its points where ``step`` is not known."""
-        ticks = []
-        for axis in range(len(masters.axes)):
-            values = masters.ticks(axis)
-            at = np.zeros((len(values), len(masters.axes)))
-            at[:, axis] = values
-            ticks.append(masters.weights_at(at))
-        corners = masters.weights_at(masters.grid()) if masters.axes else np.ones((1, 1))
+        axes = [a for a in range(len(masters.axes)) if (masters.regions[:, a, 1] != 0).any()]
+        along, places, unit = [], [masters.peaks], np.eye(len(masters.axes))
+        for a in axes:
+            along.append(masters.weights_at(masters.ticks(a)[:, None] * unit[a]))
+            places.append(_refined(masters.ticks(a), INSIDE)[:, None] * unit[a])
+        corners, weights = np.ones((1, 1)), np.ones((1, 1))
+        if axes:
+            weights = masters.weights_at(np.unique(np.concatenate(places), axis=0))
+            corners = masters.weights_at(masters.grid())
         every = np.concatenate([np.zeros(1), *(contour.points.ravel() for contour in masters.contours)])
         digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
-        return cls(corners, ticks, step or float(10.0 ** -next(digits, DIGITS)), tolerance, kink)
+        step, em = step or float(10.0 ** -next(digits, DIGITS)), float(masters.metrics.units_per_em)
+        return cls(corners, along, weights, step, tolerance, em, thresholds)
 
     def largest_turns(self, controls: FloatArray) -> FloatArray:
         """(n,) degrees by which joints (K, n, 2, 4, 2) turn at most, in the masters and along each axis: exact."""
@@ -109,6 +159,11 @@ class Design(NamedTuple):
             turns, _ = largest_turns(*(each.reshape(-1, 2, 4, 2) for each in (at[:-1], at[1:])))
             found = np.maximum(found, turns.reshape(len(at) - 1, -1).max(axis=0, initial=0.0))
         return found
+
+
+def _refined(ticks: FloatArray, parts: int) -> FloatArray:
+    """Ascending values with others evenly between them."""
+    return np.interp(np.arange((len(ticks) - 1) * parts + 1) / parts, np.arange(len(ticks)), ticks)
 
 
 def distances(old: MasterContour, new: MasterContour, design: Design, anchors: FloatArray | None = None) -> FloatArray:
@@ -124,9 +179,25 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
     if anchors is None:
         anchors = np.repeat(np.arange(m + 1.0)[:, None], 2, axis=1)
         bounds[(one == other).all(axis=(0, 2, 3))] = 0.0
+    arcs = arcs_of(old) if count > 1 and np.isnan(bounds).any() and m == len(old) else np.empty((0, 4))
     rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(-1, 4, 2)) for each in (other, one)]
     pair_instances(
         count, rows[0], offsets_of([m]), rows[1], offsets_of([len(old)]), anchors, offsets_of([m + 1]),
-        np.empty((0, 4)), SHARPNESS * design.tolerance, design.tolerance, bounds, gaps,
+        arcs, SHARPNESS * design.tolerance, design.tolerance, bounds, gaps,
     )  # fmt: skip
     return bounds
+
+
+def arcs_of(contour: MasterContour) -> FloatArray:
+    """(m, 4) the arc between corners that each segment belongs to, as :func:`.pair_instances` takes it."""
+    m = len(contour)
+    with np.errstate(invalid="ignore"):
+        smooth = (np.abs(turns_of(joint_controls(contour))) < SMOOTH).all(axis=0)
+    corners = np.flatnonzero(~smooth)
+    if not len(corners):
+        return np.tile([-np.inf, np.inf, -np.inf, np.inf], (m, 1))
+    segments = np.arange(m)
+    at = np.searchsorted(corners, segments, side="right")
+    first = np.where(at > 0, corners[at - 1], corners[-1] - m)
+    last = np.where(at < len(corners), corners[at % len(corners)], corners[0] + m)
+    return np.column_stack([first, last, first, last]).astype(np.float64)

@@ -81,7 +81,7 @@ def test_planted_kinks_come_back_to_the_clean_outline() -> None:
 
 
 def test_a_level_handle_stays_level() -> None:
-    shape = [(0, 0), (0, 300), (140, 500), (300, 500), (420, 507), (600, 300), (600, 0)]
+    shape = [(0, 0), (0, 300), (140, 500), (300, 500), (455, 509), (600, 300), (600, 0)]
     outline = gs.Outline("n", contours=[Contour(np.array(shape), np.array([3, 3, 1]))])
     mended, (change,) = gs.mend(outline, tolerance=5)
     assert mended.contours[0].points[2:5, 1].tolist() == [500, 500, 500]

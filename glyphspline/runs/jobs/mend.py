@@ -12,8 +12,8 @@ from ...checks.kinds import MENDED_UNASKED, THRESHOLDS, Thresholds
 from ...errors import OutputError
 from ...files import writing
 from ...mending.fewer import EDITED
-from ...mending.mend import Change, check_kinds, mended
-from ...mending.state import DIGITS, Into
+from ...mending.mend import check_kinds, mended
+from ...mending.state import DIGITS, Change, Into
 from ...readers import Font
 from ...readers.designspace import Designspace
 from ...readers.ufo import Ufo

@@ -1,0 +1,384 @@
+"""Kinks and jumps of a glyph mended: which points of which joints move together, and which of their moves stand.
+
+Joints near each other are one group. A group has a list of ways to move, the gentlest first; of each the least moves
+are found (:mod:`.balance`), put on the grid and certified. All groups are tried together, and those that still kink or
+bring a new finding take their next way. Of a group that has none left its joints are tried one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import NamedTuple
+
+import numpy as np
+
+from ..checks.kinds import KINDS
+from ..checks.segments import rounding_turn
+from ..checks.turns import joint_controls, turns_of
+from ..outlines.masters import MasterContour, Masters
+from ..types import FloatArray
+from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
+from .joints import EXACT, Layout
+from .state import Change, Design, State, distances
+
+BETTER = 0.7
+"""Share of its turn that a mended joint may keep, where handles are so short that the grid is coarse."""
+
+LOOSE = 0.9
+"""Share of what a joint may turn at most that it is made to turn at most between masters."""
+
+BESIDE = 0.3
+"""Degrees by which a smooth joint beside a mended one may turn, if it turned by no more."""
+
+SMALL = 3.0
+"""Moves of a point, in thousandths of an em, up to which the first way that does is taken."""
+
+HOPE = 1.5
+"""Tolerances by which samples move at most where it is worth while to look for places on the grid."""
+
+REACH = 2
+"""Segments from one joint of a group to the next at most."""
+
+
+class Way(NamedTuple):
+    """How a group moves.
+
+    Attributes:
+        far: whether the handles at the other ends of the curves move, too. node: whether the nodes do. stiff: price of
+            moves. exact: whether joints turn by less than the threshold; or, where handles or segments are so short
+            that a check does not count it, by more. meets: whether jumps of curvature that kinks hide are to vanish.
+    """
+
+    far: bool
+    node: bool
+    stiff: float
+    exact: bool
+    meets: bool
+
+
+WAYS = [
+    Way(far, node, stiff, exact, meets)
+    for exact, meets in ((True, True), (True, False), (False, True), (False, False))
+    for stiff in (0.3, 0.01)
+    for far, node in ((False, False), (True, False), (True, True))
+]
+
+
+Place = tuple[int, int]
+"""Contour and segment of a finding."""
+
+
+class Proposal(NamedTuple):
+    """Points (K, N, 2) of a contour, which of them moved, how far its curves did, certified, and the largest move."""
+
+    points: FloatArray
+    moved: list[int]
+    distance: float
+    change: float
+
+
+@dataclass
+class Group:
+    """Joints of a contour that are mended together, and the proposals that are left to try.
+
+    Attributes:
+        kind: of the finding. values: of each joint, as found. jumps: those whose curvature jumps, as found elsewhere in
+            the design space.
+    """
+
+    kind: str
+    contour: int
+    joints: list[int]
+    values: Mapping[int, float]
+    jumps: set[int]
+    ways: Iterator[Proposal]
+    now: Proposal | None = None
+    why: str | None = None
+    needs: float | None = None
+
+    def next(self, why: str | None = None) -> None:
+        """Give up the proposal for the next one."""
+        self.why = why or self.why
+        self.now = next(self.ways, None)
+
+    def touches(self, contour: int, segment: int, segments: int) -> bool:
+        """Whether a finding there may come of this group: at a joint, beside it, or of the whole contour."""
+        if contour != self.contour or self.now is None:
+            return False
+        return segment < 0 or any((segment - joint + 3) % segments <= 5 for joint in self.joints) or segments <= 6
+
+
+def smoothed(
+    first: Masters, now: Masters, before: State, changes: Mapping[Place, Change], kind: str, design: Design,
+    check: Callable[[Masters], tuple[Masters, State]], fixed: Mapping[int, str],
+) -> tuple[Masters, State, list[Change]]:  # fmt: skip
+    """The glyph without its kinks, or jumps, as far as that can be; what is found in it then; and what became of each.
+
+    Args:
+        first: the glyph as it was. now: as it is, in which ``before`` is found. changes: of the findings, by their
+            contour and segment, as if all were left. kind: of the findings.
+        check: says what the file makes of a glyph, and what is found in it. fixed: contours that may not change.
+    """
+    layouts = {c: Layout(now.contours[c]) for c, _ in changes}
+    left = dict(changes)
+    for c, s in changes:
+        left[c, s] = replace(left[c, s], why=fixed.get(c) or layouts[c].obstacle(s, kind, design.em))
+    mended = dict[Place, Change]()
+    pending = groups_of(
+        [place for place, change in left.items() if change.why is None],
+        {c: len(layout.degrees) for c, layout in layouts.items()},
+    )
+    while pending:
+        groups = []
+        for c, joints in pending:
+            jumps = {s for s in joints if kind != "jump" and (c, s) in before.values["jump"]}
+            groups.append(Group(kind, c, joints, {s: changes[c, s].before for s in joints}, jumps, iter(())))
+        for group in groups:
+            group.ways = proposals(group, first.contours[group.contour], now.contours[group.contour], design)
+            group.next()
+        now, before = _settled(first, now, groups, before, design, check)
+        pending = []
+        for group in groups:
+            own = {(group.contour, s) for s in group.joints}
+            if group.now is not None:
+                mended.update({place: left[place] for place in own})
+                continue
+            for place in own:
+                left[place] = replace(left[place], why=group.why or "is mended by no move", needs=group.needs)
+            if len(own) > 1:
+                half = (len(own) + 1) // 2
+                pending += [(group.contour, part) for part in (group.joints[:half], group.joints[half:])]
+    for place, change in _results(mended, layouts, first, now, design):
+        left[place] = change
+    return now, before, [*left.values()]
+
+
+def turns_allowed(layout: Layout, joint: int, turn: float, exact: bool, design: Design) -> FloatArray:
+    """(L,) radians by which a joint may turn at the places, so that a check finds no kink; it turned by ``turn``.
+
+    Where handles or segments are short this is more than the threshold, see :func:`.segments.joint_findings`; but not
+    if it is to be ``exact``.
+    """
+    limits = design.thresholds
+    if exact:
+        return np.full(len(design.places), np.radians(limits.kink))
+    around = layout.around(joint)
+    at = np.tensordot(design.places, layout.points[:, around], axes=1)
+    before, behind = (np.hypot(*(at[:, k] - at[:, 2]).T) for k in (1, 3))
+    found = np.full(len(at), np.radians(limits.kink))
+    if design.step == 1.0:
+        found = np.maximum(found, limits.rounding * rounding_turns(before, behind))
+    controls = np.tensordot(design.places, joint_controls(layout.contour)[:, joint], axes=1)  # (L, 2, 4, 2)
+    legs = np.linalg.norm(np.diff(controls, axis=2), axis=-1).sum(axis=-1)
+    arms = (legs + np.linalg.norm(controls[:, :, 3] - controls[:, :, 0], axis=-1)).min(axis=1) / 2
+    found = np.maximum(found, limits.kink_height * design.em / 1000 / np.maximum(arms, EXACT))
+    return np.minimum(found, np.radians(max(limits.kink, min(BETTER * turn, 0.99 * limits.turn))))
+
+
+def rounding_turns(before: FloatArray, behind: FloatArray) -> FloatArray:
+    """(L,) standard deviations; see :func:`.segments.rounding_turn`."""
+    return np.array([rounding_turn(a, b) for a, b in zip(before.tolist(), behind.tolist(), strict=True)])
+
+
+def groups_of(places: Sequence[tuple[int, int]], counts: Mapping[int, int]) -> list[tuple[int, list[int]]]:
+    """Joints, contour and segment, in groups of which one is near the next; ``counts``: segments of contours."""
+    found = []
+    for contour in sorted({c for c, _ in places}):
+        joints = sorted(s for c, s in places if c == contour)
+        runs: list[list[int]] = []
+        for joint in joints:
+            if runs and joint - runs[-1][-1] <= REACH:
+                runs[-1].append(joint)
+            else:
+                runs.append([joint])
+        if len(runs) > 1 and runs[0][0] + counts[contour] - runs[-1][-1] <= REACH:
+            runs[0] = runs.pop() + runs[0]
+        found += [(contour, run) for run in runs]
+    return found
+
+
+def proposals(group: Group, first: MasterContour, contour: MasterContour, design: Design) -> Iterator[Proposal]:
+    """The moves of a group that are within the tolerance: those after which joints turn least, then those that move
+    points least. If there are none the group knows why.
+
+    Args:
+        first: the contour as it was. contour: as it is now.
+    """  # fmt: skip
+    layout = Layout(contour)
+    seen, nearest = set[bytes](), None
+    for exact, ways in groupby(WAYS, key=lambda way: way.exact):
+        later = []
+        for way in ways:
+            free = sorted({point for joint in group.joints for point in layout.free(joint, way.far, way.node)})
+            if not free:
+                continue
+            stretch = Stretch(layout, free, way.stiff)
+            bounds = bounds_of(stretch, group, way, design)
+            x = stretch.least(bounds, design.places)
+            points = None
+            if stretch.farthest(x) <= HOPE * design.tolerance:
+                points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
+            elif nearest is None or stretch.farthest(x) < nearest[0]:
+                nearest = stretch.farthest(x), stretch, bounds, x, exact
+            if points is None or points.tobytes() in seen:
+                continue
+            seen.add(points.tobytes())
+            proposal = _proposal(group, first, layout, points, exact, design)
+            if proposal is None:
+                continue
+            if proposal.change <= SMALL * design.em / 1000:
+                yield proposal
+            else:
+                later.append(proposal)
+        yield from sorted(later, key=lambda each: each.change)
+    if group.needs is None and nearest is not None and group.why is None:
+        least, stretch, bounds, x, exact = nearest
+        points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
+        wide = design._replace(tolerance=least)
+        if (proposal := _proposal(group, first, layout, points, exact, wide)) is not None:
+            group.needs = proposal.distance
+        group.why = "is beyond the tolerance"
+
+
+def _proposal(
+    group: Group, first: MasterContour, layout: Layout, points: FloatArray, exact: bool, design: Design
+) -> Proposal | None:
+    """A contour with moved points, if joints turn by no more than they may and it is within the tolerance."""
+    new, old = MasterContour(points, layout.degrees), layout.points
+    if group.kind == "kink" and not _is_mended(layout, group, new, exact, design):
+        group.why = group.why or "is mended by no move on the grid"
+        return None
+    distance = float(distances(first, new, design).max())
+    if distance > design.tolerance:
+        group.needs = min(group.needs or np.inf, distance)
+        group.why = group.why or "is beyond the tolerance"
+        return None
+    moved = np.flatnonzero((points != old).any(axis=(0, 2))).tolist()
+    return Proposal(points, moved, distance, float(np.hypot(*(points - old).reshape(-1, 2).T).max()))
+
+
+def _is_mended(layout: Layout, group: Group, new: MasterContour, exact: bool, design: Design) -> bool:
+    """Whether the joints of a group turn by no more than they may, at the places."""
+    turns = np.radians(turns_of(np.tensordot(design.places, joint_controls(new)[:, group.joints], axes=1)))
+    for joint, own in zip(group.joints, turns.T, strict=True):
+        if not (np.abs(own) <= turns_allowed(layout, joint, group.values[joint], exact, design)).all():
+            return False
+    return True
+
+
+def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[Bound]:
+    """What the joints of a stretch may turn, and by how much their curvature may jump."""
+    layout, limits, found = stretch.layout, design.thresholds, []
+    for joint in stretch.joints.tolist():
+        around = layout.around(joint)
+        at = np.tensordot(design.places, layout.points[:, around], axes=1)
+        if np.abs(np.diff(at[:, 1:4], axis=1)).max(axis=2).min() <= EXACT:
+            continue
+        turns, own = np.abs(turns_at(at)[0]), joint in group.joints
+        if own and group.kind == "kink":
+            most = turns_allowed(layout, joint, group.values[joint], way.exact, design)
+            most *= LOOSE if len(layout.points) > 1 else 0.0
+        elif turns.max() < np.radians(limits.corner_angle):
+            most = np.maximum(turns, np.radians(BESIDE))
+        else:
+            continue
+        found.append(Bound(joint, around, False, most, np.ones(len(at))))
+        if (layout.degrees[[joint - 1, joint]] == 3).all() and np.abs(np.diff(at, axis=1)).max(axis=2).min() > EXACT:
+            per = np.maximum(np.abs(curvatures_at(at)).max(axis=0), limits.jump / design.em)
+            most = LOOSE * np.maximum(limits.relative_jump, limits.jump / design.em / per)
+            if not (own and way.meets) or joint in group.jumps:
+                most = np.maximum(most, np.abs(jumps_at(at)[0]) / per)
+            found.append(Bound(joint, around, True, most, per))
+    return found
+
+
+def _settled(
+    first: Masters, now: Masters, groups: Sequence[Group], before: State, design: Design,
+    check: Callable[[Masters], tuple[Masters, State]],
+) -> tuple[Masters, State]:  # fmt: skip
+    """The glyph with those proposals that stand together, and what is found in it."""
+    while any(group.now for group in groups):
+        trial = _with(now, groups)
+        given_up = _far(first, trial, groups, design)
+        if not given_up:
+            trial, after = check(trial)
+            given_up = _far(first, trial, groups, design) or _found_new(trial, groups, before, after)
+        for group, why in given_up:
+            group.next(why)
+        if not given_up:
+            return trial, after
+    return now, before
+
+
+def _with(masters: Masters, groups: Sequence[Group]) -> Masters:
+    """The glyph with the proposals of all groups."""
+    contours = list(masters.contours)
+    for group in groups:
+        if group.now is not None:
+            own = contours[group.contour]
+            points = own.points.copy()
+            points[:, group.now.moved] = group.now.points[:, group.now.moved]
+            contours[group.contour] = MasterContour(points, own.degrees)
+    return replace(masters, contours=contours)
+
+
+def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) -> list[tuple[Group, str]]:
+    """Groups at a segment that moved by more than the tolerance, as another group moved it too."""
+    found = []
+    for contour in sorted({group.contour for group in groups if group.now}):
+        own = [group for group in groups if group.contour == contour and group.now]
+        if len(own) < 2:
+            continue
+        bounds = distances(old.contours[contour], new.contours[contour], design)
+        for segment in np.flatnonzero(~(bounds <= design.tolerance)).tolist():
+            near = [group for group in own if group.touches(contour, segment, len(bounds))]
+            if near:
+                worst = max(near, key=lambda group: group.now.distance if group.now else 0.0)
+                found.append((worst, "is beyond the tolerance together with its neighbour"))
+    return _once(found)
+
+
+def _found_new(trial: Masters, groups: Sequence[Group], before: State, after: State) -> list[tuple[Group, str]]:
+    """Groups in which there is still what was found, or that bring new findings."""
+    found = []
+    for group in groups:
+        if group.now and any((group.contour, joint) in after.values[group.kind] for joint in group.joints):
+            found.append((group, "still kinks" if group.kind == "kink" else "is still found"))
+    for what, contour, segment, _ in after.found - before.found:
+        count = len(trial.contours[contour])
+        own = [group for group in groups if group.touches(contour, segment, count)]
+        why = f"would bring a new finding: {KINDS[what].name}"
+        found += [(group, why) for group in own or groups if group.now]
+    return _once(found)
+
+
+def _once(found: Sequence[tuple[Group, str]]) -> list[tuple[Group, str]]:
+    """Each group with the first reason."""
+    return [*{id(group): (group, why) for group, why in reversed(found)}.values()]
+
+
+def _results(
+    mended: Mapping[Place, Change], layouts: Mapping[int, Layout], first: Masters, now: Masters, design: Design
+) -> Iterator[tuple[Place, Change]]:
+    """What became of joints that are mended; of a point beside two of them the first one has the move."""
+    taken = set[tuple[int, int]]()
+    bounds = {c: distances(first.contours[c], now.contours[c], design) for c in {c for c, _ in mended}}
+    for (c, s), change in mended.items():
+        old, new, count = layouts[c].points, now.contours[c].points, layouts[c].points.shape[1]
+        reach = [(int(layouts[c].starts[s]) + k) % count for k in (-1, 0, 1, -2, 2, -3, 3)]
+        numbers = sorted({p for p in reach if (c, p) not in taken})
+        taken.update((c, p) for p in numbers)
+        moves = tuple(
+            (k, p, (float(old[k, p, 0]), float(old[k, p, 1])), (float(new[k, p, 0]), float(new[k, p, 1])))
+            for k in range(len(old))
+            for p in numbers
+            if (old[k, p] != new[k, p]).any()
+        )
+        turn = design.largest_turns(joint_controls(now.contours[c])[:, [s]])[0]
+        yield (c, s), replace(
+            change, after=float(turn) if change.kind == "kink" else None, moves=moves,
+            moved=max([float(np.hypot(u - x, v - y)) for _, _, (x, y), (u, v) in moves], default=0.0),
+            distance=float(max(bounds[c][s - 1], bounds[c][s])),
+        )  # fmt: skip
