@@ -12,7 +12,7 @@ import numpy as np
 from ..checks.finding import with_unit
 from ..checks.kinds import KINDS
 from ..checks.turns import joint_controls, turns_of
-from ..mending.mend import Change
+from ..mending.state import Change
 from ..outlines.masters import DesignAxis, Masters
 from ..types import FloatArray, rounded_up
 from ..writers.svg.comb import palette
