@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -70,12 +70,16 @@ def more_thresholds(context: typer.Context, text: str | None) -> str | None:
 Version = Annotated[
     bool, typer.Option("--version", callback=print_version, is_eager=True, help="Print the version and exit.")
 ]
+
+
+def out(help: str, metavar: str, **more: Any) -> About:
+    """The option that says where something is written."""
+    return About(help, WRITTEN, metavar, ("--out", "-o"), more=more)
+
+
 FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
 FontFiles = Annotated[list[str], typer.Argument(metavar="FONT", help=FONTS_HELP, show_default=False)]
-Out = Annotated[
-    Path,
-    About("Write to this folder.", WRITTEN, "DIR", ("--out", "-o"), more={"parser": place, "show_default": False}),
-]
+Out = Annotated[Path, out("Write to this folder.", "DIR", parser=place, show_default=False)]
 
 
 def as_typed(text: str) -> str:

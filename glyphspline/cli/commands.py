@@ -111,14 +111,7 @@ def place_or_url(text: Any) -> str:
 def dataset(
     fonts: opt.FontFiles,
     out: Annotated[
-        str,
-        About(
-            "Write to this folder, or s3://bucket/folder.",
-            None,
-            "DIR|URL",
-            ("--out", "-o"),
-            more={"parser": place_or_url, "show_default": False},
-        ),
+        str, opt.out("Write to this folder, or s3://bucket/folder.", "DIR|URL", parser=place_or_url, show_default=False)
     ],
     spec: DatasetSpec,
     run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
@@ -209,7 +202,7 @@ def atlas(
     subset: opt.Subset,
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     run: Annotated[opt.RunOptions, only("jobs", "quiet")],
-    out: Annotated[Path, About("Write this PDF.", None, "FILE", ("--out", "-o"), more=opt.PLACE)] = Path("atlas.pdf"),
+    out: Annotated[Path, opt.out("Write this PDF.", "FILE", parser=place)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
         About(

@@ -39,10 +39,7 @@ def mend(
     spec: Annotated[RunSpec, only("in_place", "layer")],
     report: Annotated[opt.ReportOptions, only("rows", "html")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
-    out: Annotated[
-        Path | None,
-        About("Write copies of the sources to this folder.", WRITTEN, "DIR", ("--out", "-o"), more=opt.PLACE),
-    ] = None,
+    out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,
     dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
     kinds: Annotated[
         str, About(f"Mend these kinds of findings, between commas: {', '.join(MENDED)}, or all.", opt.FOUND, "KIND,…")

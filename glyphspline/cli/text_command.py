@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import GlyphsplineError, OptionError
-from ..fields import WRITTEN, About
 from ..files import write_made
 from ..fitting.options import Options
 from ..types import INCHES, listed, shortened
@@ -45,12 +44,10 @@ def text(
     font: opt.FontFile,
     out: Annotated[
         list[File],
-        About(
+        opt.out(
             "Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
-            WRITTEN,
             "FILE",
-            ("--out", "-o"),
-            more={"show_default": False},
+            show_default=False,
         ),
     ],
     lines: opt.TextOptions,
