@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 from ...errors import GlyphsplineError
 from ...extras import has
 from ...outlines.outline import Outline
-from ...readers import Source
 from ...readers.pens import NO_AREA
 from ..engine import Item, Job, Observer, run
 from ..schedule import Place, sources
@@ -36,30 +37,48 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
     """A few megabytes of outlines."""
 
     def read(self, tasks: Sequence[Glyph]) -> list[Item | Exception]:
-        """Glyphs of one face are looked at together. One that cannot be opened is not opened for each of them."""
-        unread: dict[int, GlyphsplineError] = {}
-        for face in {face for face, _ in tasks}:
+        """Outlines; those of one face are looked at together. One that cannot be opened is not opened for each."""
+        found: list[Item | Exception] = []
+        for face, group in groupby(tasks, itemgetter(0)):
+            gids = [gid for _, gid in group]
             try:
-                sources(self.places[face])
+                (source,) = sources(self.places[face])
             except GlyphsplineError as error:
-                unread[face] = error
-        return [unread.get(face) or Item(gid, kind=face) for face, gid in tasks]
+                found += [error] * len(gids)
+            else:
+                read = source.outlines(gids, errors="return")
+                found += [Item(each, kind=face) if isinstance(each, Outline) else each for each in read]
+        return found
 
     def together(self, tasks: Sequence[Glyph], contents: Sequence[Any]) -> dict[str, Any]:
-        """The facts of glyphs that follow one another."""
-        return glyph_facts(sources(self.places[tasks[0][0]])[0], contents[0], contents[-1] + 1)
+        """Facts from the outlines of glyphs: counts, and unusual glyphs by name.
+
+        ``doubled_points`` are those that readers leave out, ``leftover_points`` those of :mod:`..checks` on lines.
+        ``overlaps`` are glyphs with contours that overlap or cross themselves; parts of them are filled twice. It is
+        null if skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` glyphs have contours that enclose
+        nothing: of one or two points mostly, which TrueType fonts use as anchors. ``contours_left_out`` counts these.
+        """
+        left_out = [sum(NO_AREA in note for note in outline.notes) for outline in contents]
+        return {
+            "contours": sum(len(outline.contours) for outline in contents),
+            "segments": sum(len(outline.arrays.degrees) for outline in contents),
+            "doubled_points": sum(int(outline.repeats.sum()) for outline in contents if outline.repeats is not None),
+            "leftover_points": leftovers(contents),
+            "contours_left_out": sum(left_out),
+            "broken_glyphs": 0,
+            "broken": [],
+            "degenerate": [outline.name for outline, count in zip(contents, left_out, strict=True) if count],
+            "overlaps": [outline.name for outline in contents if overlaps(outline)] if has("overlaps") else None,
+        }
 
     def failed(self, task: Glyph, error: Exception) -> dict[str, Any]:
         """A broken glyph."""
-        return dict.fromkeys(COUNTS, 0) | {"broken_glyphs": 1, "broken": [f"gid {task[1]}"], "degenerate": []}
-
-    def failures(self, result: dict[str, Any]) -> int:
-        """Number of broken glyphs."""
-        return int(result["broken_glyphs"])
+        name = getattr(error, "glyph", None) or f"gid {task[1]}"
+        return dict.fromkeys(COUNTS, 0) | {"broken_glyphs": 1, "broken": [name], "degenerate": []}
 
 
 def add_glyph_facts(path: Path, facts: dict[str, Any], executor: Executor, observer: Observer | None = None) -> None:
-    """Add to each face of :func:`..readers.open.file_facts` what :func:`glyph_facts` finds.
+    """Add to each face of :func:`..readers.open.file_facts` what :meth:`FactsJob.together` finds.
 
     Args:
         path: the file. facts: are added to. executor: of the calls.
@@ -81,41 +100,13 @@ def _together(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:
     return found | {"overlaps": [name for names in looked for name in names] if looked else None}
 
 
-def glyph_facts(source: Source, first: int, last: int) -> dict[str, Any]:
-    """Facts from the outlines of glyphs ``first`` up to ``last``: counts, and unusual glyphs by name.
-
-    ``doubled_points`` are those that readers leave out, ``leftover_points`` those of :mod:`..checks` on lines.
-    ``overlaps`` are glyphs with contours that overlap or cross themselves; parts of them are filled twice. It is null
-    if skia-pathops (the extra ``overlaps``) is not installed. ``degenerate`` glyphs have contours that enclose nothing:
-    of one or two points mostly, which TrueType fonts use as anchors. ``contours_left_out`` counts these.
-    """
-    names, has_pathops = source.glyph_names[first:last], has("overlaps")
-    read = list(zip(names, source.outlines(names, errors="return"), strict=True))
-    outlines = [outline for _, outline in read if isinstance(outline, Outline)]
-    broken = [name for name, outline in read if not isinstance(outline, Outline)]
-    left_out = [sum(NO_AREA in note for note in outline.notes) for outline in outlines]
-    return {
-        "contours": sum(len(outline.contours) for outline in outlines),
-        "segments": sum(len(outline.arrays.degrees) for outline in outlines),
-        "doubled_points": sum(int(outline.repeats.sum()) for outline in outlines),
-        "leftover_points": leftovers(outlines),
-        "contours_left_out": sum(left_out),
-        "broken_glyphs": len(broken),
-        "broken": broken,
-        "degenerate": [outline.name for outline, count in zip(outlines, left_out, strict=True) if count],
-        "overlaps": [outline.name for outline in outlines if overlaps(outline)] if has_pathops else None,
-    }
-
-
 def leftovers(outlines: Sequence[Outline]) -> int:
-    """Number of points on lines in glyphs of one em."""
+    """Number of points on lines in glyphs of one em, at least one."""
     from ...checks.kinds import LEFTOVER, THRESHOLDS
     from ...checks.segments import WHAT, Segments, joint_findings
     from ...outlines.contour_arrays import joined
     from ...outlines.segments import all_cubics
 
-    if not outlines:
-        return 0
     contours = joined([outline.arrays for outline in outlines])
     limits = THRESHOLDS.limits(outlines[0].metrics.units_per_em)
     found = joint_findings(Segments.of(all_cubics(contours), contours), limits)
