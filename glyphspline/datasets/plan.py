@@ -15,13 +15,7 @@ from typing import Any, NamedTuple
 from .._version import __version__
 from ..runs.engine import slices
 from .scan import SPLITS, FontFacts
-from .spec import DatasetSpec
-
-SHARD = 10_000
-"""Glyphs in a shard, at most: of Latin letters some 30 MB, with 64 points a contour and their fit."""
-
-CHUNK, CHUNK_BYTES = 100, 1 << 23
-"""Glyphs that a worker makes rows of at a time, and bytes that these need, at most."""
+from .spec import USUAL, DatasetSpec, Sizes
 
 LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "fonttools", "uharfbuzz")
 """Those whose versions decide the bytes of shards."""
@@ -62,17 +56,20 @@ class Plan:
     Attributes:
         spec: what it holds. fonts: all faces at their locations, in the order of rows first, by split, hash, face and
             location; then the others.
+        sizes: where it is cut.
     """
 
     spec: DatasetSpec
     fonts: tuple[FontFacts, ...]
+    sizes: Sizes = USUAL
 
     @cached_property
     def shards(self) -> tuple[Shard, ...]:
         """The files, in order."""
         found: list[Shard] = []
         for split in SPLITS:
-            packs = list(_packs([(k, font) for k, font in enumerate(self.fonts) if font.split == split]))
+            own = [(k, font) for k, font in enumerate(self.fonts) if font.split == split]
+            packs = list(_packs(own, self.sizes.shard))
             found += [
                 Shard(f"data/{split}-{k:05d}-of-{len(packs):05d}.parquet", split, pieces)
                 for k, pieces in enumerate(packs)
@@ -86,7 +83,7 @@ class Plan:
 
     def chunks(self, shard: Shard) -> Iterator[Sequence[Task]]:
         """The tasks of a shard in order, in chunks of one font each."""
-        size = max(1, min(CHUNK, CHUNK_BYTES // self.spec.glyph_bytes))
+        size = max(1, min(self.sizes.chunk, self.sizes.chunk_bytes // self.spec.glyph_bytes))
         for font, first, last in shard.pieces:
             yield from slices([Task(self.fonts[font], k) for k in range(first, last)], size)
 
@@ -105,6 +102,7 @@ class Plan:
             "spec": asdict(self.spec) | {"options": options},
             "fonts": {"count": len(fonts), "sha256": _digest(fonts)},
             "shards": len(self.shards),
+            **({} if self.sizes == USUAL else {"sizes": asdict(self.sizes)}),
         }
 
     @cached_property
@@ -113,10 +111,10 @@ class Plan:
         return _digest(self.record)
 
 
-def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]]:
-    """The glyphs of a split's fonts in packs of ``SHARD``."""
+def _packs(fonts: Sequence[tuple[int, FontFacts]], size: int) -> Iterator[tuple[Piece, ...]]:
+    """The glyphs of a split's fonts in packs of a size."""
     pack: list[Piece] = []
-    room = SHARD
+    room = size
     for number, font in fonts:
         first = 0
         while first < font.taken:
@@ -125,12 +123,12 @@ def _packs(fonts: Sequence[tuple[int, FontFacts]]) -> Iterator[tuple[Piece, ...]
             room, first = room - (last - first), last
             if not room:
                 yield tuple(pack)
-                pack, room = [], SHARD
+                pack, room = [], size
     if pack:
         yield tuple(pack)
 
 
-def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
+def plan_of(spec: DatasetSpec, found: Sequence[FontFacts], sizes: Sizes = USUAL) -> Plan:
     """The plan for fonts that were scanned, in any order. Fonts of the same bytes are taken once."""
     fonts: list[FontFacts] = []
     by_key: dict[Any, FontFacts] = {}
@@ -149,7 +147,7 @@ def plan_of(spec: DatasetSpec, found: Sequence[FontFacts]) -> Plan:
             font = font if same is font else replace(font, same_as=same.sha256)
         fonts.append(font)
     fonts.sort(key=lambda f: (SPLITS.index(f.split) if f.split else len(SPLITS), *f.key, f.file))
-    return Plan(spec, tuple(fonts))
+    return Plan(spec, tuple(fonts), sizes)
 
 
 def _digest(value: Any) -> str:

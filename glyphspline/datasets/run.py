@@ -30,7 +30,7 @@ from .columns import schema
 from .plan import Plan, Shard, Task, plan_of, record_text
 from .scan import ScanJob, selected
 from .shards import OfFont, add_shapes, finished, write_shard
-from .spec import DatasetSpec
+from .spec import USUAL, DatasetSpec, Sizes
 
 RECORD, FONTS, CARD = "dataset.json", "fonts.parquet", "README.md"
 """Files beside the folder of shards."""
@@ -105,6 +105,7 @@ def dataset(
     scheduler: str | None = None,
     restart: bool = False,
     observer: Observer | None = None,
+    sizes: Sizes = USUAL,
 ) -> Summary:
     """Make a data set of the glyphs of fonts: a folder of Parquet files that ``datasets.load_dataset`` opens.
 
@@ -124,6 +125,7 @@ def dataset(
         scheduler: address of a dask cluster, whose workers are used instead: ``tcp://10.0.0.1:8786``.
         restart: remove the files of an earlier run first.
         observer: called after each chunk of glyphs.
+        sizes: of files, row groups and chunks.
 
     Raises:
         OutputError: the folder cannot be written, another run writes to it, or it holds a data set of other options,
@@ -149,7 +151,7 @@ def dataset(
         workers(jobs, limits.seconds, kinds, len(found), scheduler=scheduler, executor=executor) as pool,
     ):
         scanned = run(ScanJob(spec), [path.absolute() for path in found], pool)
-        plan = plan_of(spec, [facts for part in scanned for facts in part.result])
+        plan = plan_of(spec, [facts for part in scanned for facts in part.result], sizes)
         _prepare(folder, plan, restart)
         summary = _written(folder, plan, pool, limits, observer)
     summary.seconds = time.perf_counter() - started
@@ -234,7 +236,7 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     layout = schema(plan.spec, of_fonts=True)
     for shard, fonts in held.items():
         if fonts is None:
-            fonts = write_shard(paths[shard], of_shard(shard), shapes, mark_of(shard, plan), layout)
+            fonts = write_shard(paths[shard], of_shard(shard), shapes, mark_of(shard, plan), layout, plan.sizes)
             following -= 1
         elif following:
             add_shapes(paths[shard], shapes)

@@ -15,10 +15,7 @@ from ..runs.rows import Made, table_in
 from ..runs.shapes import Shapes
 from ..types import BoolArray, IntArray
 from ..writers.parquet import writing_of
-
-ROW_GROUP, GROUP_BYTES = 2000, 1 << 26
-"""Rows in a row group, at most: what a reader has to read for one row. With fewer, footers are larger. A group of so
-many bytes ends sooner, with a chunk."""
+from .spec import Sizes
 
 NAMED = 3
 """Glyphs of a font that failed and are named, in each shard."""
@@ -81,12 +78,14 @@ def outside(table: Any) -> int:
     return len(table["gid"].take(pa.array(far)).unique())
 
 
-def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mark: str, schema: Any) -> Held:
+def write_shard(
+    path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mark: str, schema: Any, sizes: Sizes
+) -> Held:
     """Write a shard whole.
 
     Args:
         made: the rows of its chunks in order, each with the number of its font. shapes: of the rows before it; those
-            of the shard are added. mark: see :func:`finished`. schema: of the rows.
+            of the shard are added. mark: see :func:`finished`. schema: of the rows. sizes: of row groups.
 
     Raises:
         OutputError: it cannot be written.
@@ -108,10 +107,10 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
         # A thread writes one row group while this one gives work to the workers and collects the rows of the next.
         with parquet.ParquetWriter(file, schema, **writing_of(schema)) as writer, ThreadPoolExecutor(1) as thread:
             written: Future[None] | None = None
-            for group in _groups(tables(), schema):
+            for group in _groups(tables(), schema, sizes):
                 if written is not None:
                     written.result()
-                written = thread.submit(writer.write_table, group, row_group_size=ROW_GROUP)
+                written = thread.submit(writer.write_table, group, row_group_size=sizes.group)
             if written is not None:
                 written.result()
             facts = json.dumps({str(font): of_font for font, of_font in held.items()}, ensure_ascii=False)
@@ -121,17 +120,17 @@ def write_shard(path: str, made: Iterable[tuple[int, Made]], shapes: Shapes, mar
     return held
 
 
-def _groups(tables: Iterable[Any], schema: Any) -> Iterator[Any]:
-    """The rows of tables in tables of ``ROW_GROUP``, or fewer if these are large; the last one is shorter."""
+def _groups(tables: Iterable[Any], schema: Any, sizes: Sizes) -> Iterator[Any]:
+    """The rows of tables in tables of ``sizes.group``, or fewer if these are large; the last one is shorter."""
     pa = need("parquet")
     waiting, count, size = [schema.empty_table()], 0, 0
     for table in tables:
         waiting.append(table)
         count, size = count + table.num_rows, size + table.nbytes
-        while count >= ROW_GROUP or size >= GROUP_BYTES:
+        while count >= sizes.group or size >= sizes.group_bytes:
             whole = pa.concat_tables(waiting).combine_chunks()
-            yield whole.slice(0, ROW_GROUP)
-            rest = whole.slice(ROW_GROUP)
+            yield whole.slice(0, sizes.group)
+            rest = whole.slice(sizes.group)
             waiting, count, size = [rest], rest.num_rows, rest.nbytes
     if count:
         yield pa.concat_tables(waiting).combine_chunks()

@@ -73,3 +73,25 @@ class DatasetSpec:
         require(self.options is None or isinstance(self.options, Options), "options are Options, or None", self.options)
         if self.validation + self.test > 1:
             raise OptionError("validation and test are more than all families together")
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Where a data set is cut: other sizes give other bytes.
+
+    Attributes:
+        shard: glyphs in a file, at most: of Latin letters some 30 MB, with 64 points a contour and their fit.
+        chunk, chunk_bytes: glyphs that a worker makes rows of at a time, and bytes that these need, at most.
+        group, group_bytes: rows in a row group, at most: what a reader has to read for one row. With fewer, footers are
+            larger. A group of so many bytes ends sooner, with a chunk.
+    """
+
+    shard: int = 10_000
+    chunk: int = 100
+    chunk_bytes: int = 1 << 23
+    group: int = 2000
+    group_bytes: int = 1 << 26
+
+
+USUAL = Sizes()
+"""Those of every data set that does not ask for others."""

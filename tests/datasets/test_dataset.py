@@ -12,6 +12,7 @@ import time
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from dataclasses import replace
+from functools import partial
 from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
@@ -28,12 +29,11 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli import app
-from glyphspline.datasets import plan, shards
 from glyphspline.datasets.card import command
 from glyphspline.datasets.plan import Plan, Task, plan_of
 from glyphspline.datasets.run import RowsJob
 from glyphspline.datasets.scan import SPLITS, FontFacts, licence_of, split_of
-from glyphspline.datasets.spec import DatasetSpec
+from glyphspline.datasets.spec import DatasetSpec, Sizes
 from glyphspline.outlines.canonical_outlines import canonical_outlines
 from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
@@ -43,15 +43,10 @@ from glyphspline.runs.spec import Limits
 from tests.places import FONTS
 
 PLAIN = DatasetSpec(options=None, points=8)
-SMALL = 25
-"""Glyphs in a shard, so that the test fonts fill several."""
+SMALL = Sizes(shard=25, chunk=10, group=10)
+"""Few glyphs in a shard, so that the test fonts fill several."""
 
-
-@pytest.fixture(autouse=True)
-def small_shards(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "SHARD", SMALL)
-    monkeypatch.setattr(plan, "CHUNK", 10)
-    monkeypatch.setattr(shards, "ROW_GROUP", 10)
+dataset = partial(gs.dataset, sizes=SMALL)
 
 
 def contents(folder: Path) -> dict[str, str]:
@@ -86,8 +81,8 @@ def renamed(path: Path, source: str, **names: str) -> Path:
 
 
 def test_the_bytes_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
-    gs.dataset(FONTS, tmp_path / "0", PLAIN, jobs=0)
-    gs.dataset([str(path) for path in sorted(FONTS.iterdir(), reverse=True) if path.suffix != ".md"],
+    dataset(FONTS, tmp_path / "0", PLAIN, jobs=0)
+    dataset([str(path) for path in sorted(FONTS.iterdir(), reverse=True) if path.suffix != ".md"],
                tmp_path / "2", PLAIN, jobs=2)  # fmt: skip
     found = contents(tmp_path / "0")
     assert found == contents(tmp_path / "2")
@@ -98,18 +93,17 @@ def test_the_bytes_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> Non
 MAKE = """
 import sys, time
 import glyphspline as gs
-from glyphspline.datasets import plan, shards
-from glyphspline.datasets.spec import DatasetSpec
-plan.SHARD, plan.CHUNK, shards.ROW_GROUP = 25, 10, 10
+from glyphspline.datasets.spec import DatasetSpec, Sizes
+sizes = Sizes(shard=25, chunk=10, group=10)
 wait = lambda done, total, failed: time.sleep(0.15)
-gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait)
+gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait, sizes=sizes)
 """
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")
 @pytest.mark.parametrize("finished", [1, 3])
 def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: int, tmp_path: Path) -> None:
-    gs.dataset(FONTS, tmp_path / "whole", PLAIN, jobs=0)
+    dataset(FONTS, tmp_path / "whole", PLAIN, jobs=0)
     out = tmp_path / "killed"
     run = subprocess.Popen([sys.executable, "-c", MAKE, str(FONTS), str(out)])
     try:
@@ -124,7 +118,7 @@ def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: in
     before = {path: path.stat().st_mtime_ns for path in out.glob("data/*.parquet")}
     assert finished <= len(before) < len(list((tmp_path / "whole" / "data").iterdir()))
     assert not (out / "README.md").exists()
-    gs.dataset(FONTS, out, PLAIN, jobs=0)
+    dataset(FONTS, out, PLAIN, jobs=0)
     assert {path: path.stat().st_mtime_ns for path in before} == before  # none was made again
     assert contents(out) == contents(tmp_path / "whole")
 
@@ -149,12 +143,12 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
             raise StoppedError
 
     monkeypatch.setattr(RowsJob, "together", counted)
-    monkeypatch.setattr(plan, "SHARD", 1000)
-    gs.dataset(FONTS, tmp_path / "whole", spec, jobs=0)
+    one = replace(SMALL, shard=1000)
+    dataset(FONTS, tmp_path / "whole", spec, jobs=0, sizes=one)
     whole, out = sum(counts), tmp_path / "stopped"
     counts.clear()
     with pytest.raises(StoppedError):
-        gs.dataset(FONTS, out, spec, jobs=0, observer=until)
+        dataset(FONTS, out, spec, jobs=0, observer=until, sizes=one)
     kept, made = out / ".unfinished", sum(counts)
     last = max(kept.iterdir(), key=lambda file: int(file.name))
     assert not list(out.glob("data/*.parquet"))
@@ -168,7 +162,7 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
             data[:-1] if damage == "cut" else data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
         )
     counts.clear()
-    gs.dataset(FONTS, out, spec, jobs=0)
+    dataset(FONTS, out, spec, jobs=0, sizes=one)
     again = sum(counts) - (whole - made)
     assert again == made if damage == "link" else (0 < again <= 10) == bool(damage)
     assert contents(out) == contents(tmp_path / "whole")
@@ -182,38 +176,38 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
 def test_glyphs_that_miss_the_tolerance_are_counted(rows: Any, options: gs.Options, count: int, tmp_path: Path) -> None:
     spec = DatasetSpec(options=options, characters="O8", rows=rows)
     for _ in range(2):
-        summary = gs.dataset(FONTS / "kouzan-gyosho.ttf", tmp_path, spec, jobs=0)
+        summary = dataset(FONTS / "kouzan-gyosho.ttf", tmp_path, spec, jobs=0)
         assert (summary.glyphs, summary.outside_tolerance) == (2, count)
 
 
 def test_shards_that_are_gone_or_broken_are_made_again(tmp_path: Path) -> None:
-    gs.dataset(FONTS, tmp_path, PLAIN, jobs=0)
+    dataset(FONTS, tmp_path, PLAIN, jobs=0)
     before = contents(tmp_path)
     files = sorted((tmp_path / "data").iterdir())
     files[0].unlink()
     files[2].write_bytes(files[2].read_bytes()[:-100])
     shutil.copy(files[3], files[1])  # of the same run, but not this shard
     (tmp_path / "fonts.parquet").unlink()
-    gs.dataset(FONTS, tmp_path, PLAIN, jobs=0)
+    dataset(FONTS, tmp_path, PLAIN, jobs=0)
     assert contents(tmp_path) == before
 
 
 def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
-    gs.dataset(FONTS / "variable.ttf", tmp_path / "set", PLAIN, jobs=0)
+    dataset(FONTS / "variable.ttf", tmp_path / "set", PLAIN, jobs=0)
     before = contents(tmp_path / "set")
     with pytest.raises(gs.OutputError, match=r"spec\.points: 8 in the folder, 9 now"):
-        gs.dataset(FONTS / "variable.ttf", tmp_path / "set", replace(PLAIN, points=9), jobs=0)
+        dataset(FONTS / "variable.ttf", tmp_path / "set", replace(PLAIN, points=9), jobs=0)
     with pytest.raises(gs.OutputError, match=r"fonts\.count: 1 in the folder, 2 now"):
-        gs.dataset([FONTS / "variable.ttf", FONTS / "edge-cases.ttf"], tmp_path / "set", PLAIN, jobs=0)
+        dataset([FONTS / "variable.ttf", FONTS / "edge-cases.ttf"], tmp_path / "set", PLAIN, jobs=0)
     assert contents(tmp_path / "set") == before
-    gs.dataset(FONTS / "edge-cases.ttf", tmp_path / "set", replace(PLAIN, points=9), jobs=0, restart=True)
-    gs.dataset(FONTS / "edge-cases.ttf", tmp_path / "new", replace(PLAIN, points=9), jobs=0)
+    dataset(FONTS / "edge-cases.ttf", tmp_path / "set", replace(PLAIN, points=9), jobs=0, restart=True)
+    dataset(FONTS / "edge-cases.ttf", tmp_path / "new", replace(PLAIN, points=9), jobs=0)
     assert contents(tmp_path / "set") == contents(tmp_path / "new")
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "README.md").write_text("mine")
     for restart in (False, True):
         with pytest.raises(gs.OutputError, match="of no data set"):
-            gs.dataset(FONTS / "variable.ttf", tmp_path / "other", PLAIN, jobs=0, restart=restart)
+            dataset(FONTS / "variable.ttf", tmp_path / "other", PLAIN, jobs=0, restart=restart)
         (tmp_path / "other" / "dataset.json").write_text('{"name": "mine too"}')
     assert [path.name for path in sorted((tmp_path / "other").iterdir())] == ["README.md", "dataset.json"]
 
@@ -245,8 +239,8 @@ class Scrambled(Executor):
 
 
 def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    font = FontFacts(Path("gone.ttf"), "gone.ttf", sha256="a", split="train", taken=SMALL * 40)
-    whole = Plan(PLAIN, (font,))
+    font = FontFacts(Path("gone.ttf"), "gone.ttf", sha256="a", split="train", taken=SMALL.shard * 40)
+    whole = Plan(PLAIN, (font,), SMALL)
     pool = Scrambled(lost=437)
 
     def ending(*args: Any, **kwargs: Any) -> Any:  # the last calls, which are fewer than are waited for
@@ -261,7 +255,7 @@ def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyP
     chunks = (chunk for shard in whole.shards for chunk in whole.chunks(shard))
     found = list(run(RowsJob(PLAIN, Limits()), (), pool, ordered=True, chunks=chunks))
     numbers = [task.at for part in found for task in part.tasks]
-    assert numbers == list(range(SMALL * 40))
+    assert numbers == list(range(SMALL.shard * 40))
     assert [part.result.failed for part in found if part.result.failed] == [[("#437", "the worker process died")]]
 
 
@@ -279,7 +273,7 @@ class Lossy(Executor):
 def test_glyphs_that_cost_a_worker_are_named() -> None:
     facts = FontFacts(FONTS / "kouzan-kaisho.ttf", "kouzan-kaisho.ttf", sha256="a", split="train", taken=5)
     spec = replace(PLAIN, characters="あいうのを")
-    whole = Plan(spec, (facts,))
+    whole = Plan(spec, (facts,), SMALL)
     found = run(RowsJob(spec, Limits()), (), Lossy(), ordered=True, chunks=whole.chunks(whole.shards[0]))
     assert [name for part in found for name, _ in part.result.failed] == [f"uni{ord(c):04X}" for c in "あいうのを"]
 
@@ -293,7 +287,7 @@ def test_splits_are_of_families_and_do_not_depend_on_other_fonts(tmp_path: Path)
         (tmp_path / "fonts").mkdir(exist_ok=True)
         for style in ("one", "two"):
             renamed(tmp_path / "fonts" / f"{k}-{style}.ttf", "kouzan-gyosho.ttf", family=f"Family {k}", version=style)
-    gs.dataset(tmp_path / "fonts", tmp_path / "set", spec, jobs=0)
+    dataset(tmp_path / "fonts", tmp_path / "set", spec, jobs=0)
     splits: dict[str, set[str]] = {}
     for row in rows_of(tmp_path / "set"):
         splits.setdefault(row["family"], set()).add(row["split"])
@@ -301,7 +295,7 @@ def test_splits_are_of_families_and_do_not_depend_on_other_fonts(tmp_path: Path)
     assert all(len(found) == 1 for found in splits.values())
     assert {split for found in splits.values() for split in found} == set(SPLITS)
     assert splits == {family: {split_of(family, spec)} for family in splits}
-    gs.dataset(tmp_path / "fonts" / "3-one.ttf", tmp_path / "alone", spec, jobs=0)
+    dataset(tmp_path / "fonts" / "3-one.ttf", tmp_path / "alone", spec, jobs=0)
     assert {row["split"] for row in rows_of(tmp_path / "alone")} == splits["Family 3"]
 
 
@@ -318,7 +312,7 @@ def test_shares_of_splits_are_kept_over_many_families() -> None:
 
 def test_characters_scripts_and_coverage_choose(tmp_path: Path) -> None:
     spec = replace(PLAIN, characters="AB龍Ω", coverage=0.5)
-    summary = gs.dataset(FONTS, tmp_path / "some", spec, jobs=0)
+    summary = dataset(FONTS, tmp_path / "some", spec, jobs=0)
     rows = rows_of(tmp_path / "some")
     assert {row["characters"] for row in rows} == {"A", "B", "龍"}
     assert {(row["script"], row["category"]) for row in rows} == {("Latn", "Lu"), ("Hani", "Lo")}
@@ -329,14 +323,14 @@ def test_characters_scripts_and_coverage_choose(tmp_path: Path) -> None:
     }
     assert fonts["kouzan-gyosho.ttf", 0]["coverage"] == 0.75
     assert summary.rows == len(rows) == sum(font["rows"] for font in fonts.values())
-    gs.dataset(FONTS / "kouzan-kaisho.ttf", tmp_path / "kana", replace(PLAIN, scripts=("Hira",)), jobs=0)
+    dataset(FONTS / "kouzan-kaisho.ttf", tmp_path / "kana", replace(PLAIN, scripts=("Hira",)), jobs=0)
     assert sorted(row["characters"] for row in rows_of(tmp_path / "kana")) == sorted("あいうのを")
 
 
 def test_variable_fonts_are_taken_at_their_named_instances(tmp_path: Path) -> None:
     file = FONTS / "variable-cff2.otf"
-    gs.dataset(file, tmp_path / "default", PLAIN, jobs=0)
-    gs.dataset([file, FONTS / "variable.ttf"], tmp_path / "named", replace(PLAIN, instances="named"), jobs=2)
+    dataset(file, tmp_path / "default", PLAIN, jobs=0)
+    dataset([file, FONTS / "variable.ttf"], tmp_path / "named", replace(PLAIN, instances="named"), jobs=2)
     found = pq.read_table(tmp_path / "named" / "fonts.parquet").to_pylist()
     assert [(row["style"], row["location"], row["weight_class"]) for row in found if row["file"] == file.name] == [
         ("Regular", "wght=400,wdth=100", 400),
@@ -365,7 +359,7 @@ def test_licences_choose_and_are_told(tmp_path: Path) -> None:
         renamed(tmp_path / "apache.ttf", "variable.ttf", url="https://apache.org/licenses/LICENSE-2.0", family="Two"),
         renamed(tmp_path / "none.ttf", "variable.ttf", copyright="All rights reserved", family="Three"),
     ]
-    summary = gs.dataset(fonts, tmp_path / "set", replace(PLAIN, licences=("OFL-1.1", "Apache-2.0")), jobs=0)
+    summary = dataset(fonts, tmp_path / "set", replace(PLAIN, licences=("OFL-1.1", "Apache-2.0")), jobs=0)
     assert {row["licence"] for row in rows_of(tmp_path / "set")} == {"OFL-1.1", "Apache-2.0"} == set(summary.licences)
     found = fonts_of(tmp_path / "set")["none.ttf", 0]
     assert (found["status"], found["licence"], found["reason"]) == ("left out", "unknown", "its licence is unknown")
@@ -421,7 +415,7 @@ def test_broken_fonts_and_glyphs_cost_only_themselves(jobs: int, tmp_path: Path)
     (tmp_path / "fonts" / "cut.ttf").write_bytes((FONTS / "kouzan-gyosho.ttf").read_bytes()[:3000])
     (tmp_path / "fonts" / "text.otf").write_text("no font")
     shutil.copy(FONTS / "variable.ttf", tmp_path / "fonts")
-    summary = gs.dataset(tmp_path / "fonts", tmp_path / "set", PLAIN, jobs=jobs)
+    summary = dataset(tmp_path / "fonts", tmp_path / "set", PLAIN, jobs=jobs)
     found = fonts_of(tmp_path / "set")
     assert {file: font["status"] for (file, _), font in found.items()} == {
         "glyph.ttf": "taken", "variable.ttf": "taken", "cut.ttf": "failed", "text.otf": "failed",
@@ -442,7 +436,7 @@ def test_names_that_would_escape_stay_in_their_cells(tmp_path: Path) -> None:
     (tmp_path / "fonts").mkdir()
     renamed(tmp_path / "fonts" / "a|b`c.ttf", "kouzan-gyosho.ttf", family=nasty, licence=nasty + " OFL", url=nasty)
     spec = replace(PLAIN, characters="A`\n---\n$(rm)")
-    gs.dataset(tmp_path / "fonts", tmp_path / "set", spec, jobs=0)
+    dataset(tmp_path / "fonts", tmp_path / "set", spec, jobs=0)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["fonts", "set"]
     assert {path.name for path in (tmp_path / "set").iterdir()} == {
         "README.md",
@@ -469,7 +463,7 @@ def test_fonts_and_shapes_that_are_there_twice_are_marked(tmp_path: Path) -> Non
     for file in ("kouzan-gyosho.ttf", "kouzan-gyosho.woff2"):
         shutil.copy(FONTS / file, tmp_path / "fonts")
     shutil.copy(FONTS / "kouzan-gyosho.ttf", tmp_path / "fonts" / "again.ttf")
-    gs.dataset(tmp_path / "fonts", tmp_path / "set", PLAIN, jobs=0)
+    dataset(tmp_path / "fonts", tmp_path / "set", PLAIN, jobs=0)
     fonts = fonts_of(tmp_path / "set")
     first, again = fonts["again.ttf", 0], fonts["kouzan-gyosho.ttf", 0]
     assert (first["status"], again["status"], again["same_as"]) == ("taken", "duplicate", first["sha256"])
@@ -512,13 +506,13 @@ def test_shards_hold_each_glyph_once_and_no_more_than_they_may() -> None:
         FontFacts(Path(f"{k}"), f"{k}", sha256=f"{k:03d}", split=SPLITS[k % 3], taken=int(size))
         for k, size in enumerate(sizes)
     ]
-    whole = plan_of(PLAIN, [fonts[k] for k in rng.permutation(40)])
-    assert whole.digest == plan_of(PLAIN, fonts).digest
+    whole = plan_of(PLAIN, [fonts[k] for k in rng.permutation(40)], SMALL)
+    assert whole.digest == plan_of(PLAIN, fonts, SMALL).digest
     taken = [(task.font.file, task.at) for shard in whole.shards for chunk in whole.chunks(shard) for task in chunk]
     assert len(set(taken)) == len(taken) == sizes.sum()
     last = {shard.split: shard for shard in whole.shards}
-    assert all(shard.glyphs == SMALL for shard in whole.shards if shard is not last[shard.split])
-    assert all(0 < shard.glyphs <= SMALL for shard in last.values())
+    assert all(shard.glyphs == SMALL.shard for shard in whole.shards if shard is not last[shard.split])
+    assert all(0 < shard.glyphs <= SMALL.shard for shard in last.values())
     assert all(task.font.split == shard.split for shard in whole.shards for c in whole.chunks(shard) for task in c)
 
 
@@ -530,7 +524,7 @@ def letters(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A data set with fits."""
     out = tmp_path_factory.mktemp("letters") / "set"
     fonts = [FONTS / "kouzan-gyosho.ttf", FONTS / "variable.ttf", FONTS / "kouzan-kaisho.ttf"]
-    gs.dataset(fonts, out, DatasetSpec(points=16, characters="AOgB", validation=0.3, test=0.3), jobs=0)
+    dataset(fonts, out, DatasetSpec(points=16, characters="AOgB", validation=0.3, test=0.3), jobs=0)
     return out
 
 
@@ -547,7 +541,7 @@ def test_arrow_opens_it(letters: Path) -> None:
 
 
 def test_row_groups_are_bounded(tmp_path: Path) -> None:
-    gs.dataset(FONTS, tmp_path, PLAIN, jobs=0)
+    dataset(FONTS, tmp_path, PLAIN, jobs=0)
     for path in (tmp_path / "data").iterdir():
         file = pq.ParquetFile(path).metadata
         sizes = [file.row_group(k).num_rows for k in range(file.num_row_groups)]
@@ -555,12 +549,11 @@ def test_row_groups_are_bounded(tmp_path: Path) -> None:
         assert 0 < sizes[-1] <= 10
 
 
-def test_large_rows_make_small_groups_and_chunks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "CHUNK_BYTES", 1 << 20)
-    monkeypatch.setattr(shards, "GROUP_BYTES", 1 << 20)
+def test_large_rows_make_small_groups_and_chunks(tmp_path: Path) -> None:
+    sizes = replace(SMALL, chunk_bytes=1 << 20, group_bytes=1 << 20)
     spec = replace(PLAIN, raster=512)
     for jobs in (0, 2):
-        gs.dataset(FONTS / "kouzan-gyosho.ttf", tmp_path / str(jobs), spec, jobs=jobs)
+        dataset(FONTS / "kouzan-gyosho.ttf", tmp_path / str(jobs), spec, jobs=jobs, sizes=sizes)
     (file,) = (tmp_path / "0" / "data").iterdir()
     found = pq.ParquetFile(file).metadata
     groups = [found.row_group(k).num_rows for k in range(found.num_row_groups)]
@@ -579,14 +572,14 @@ def test_a_glyph_of_more_contours_than_real_ones_have_fails_alone(tmp_path: Path
     tables["glyf"][name] = glyph = pen.glyph()
     glyph.recalcBounds(tables["glyf"])
     tables.save(tmp_path / "many.ttf")
-    summary = gs.dataset(tmp_path / "many.ttf", tmp_path / "set", replace(PLAIN, points=2000), jobs=0)
+    summary = dataset(tmp_path / "many.ttf", tmp_path / "set", replace(PLAIN, points=2000), jobs=0)
     assert summary.failures == [("many.ttf", name, "150 contours of 2000 points, more than the 200000 points allowed")]
 
 
 def test_metrics_are_in_the_unit_that_is_asked_for(tmp_path: Path) -> None:
     for normalise in ("em", "units"):
         spec = replace(PLAIN, normalise=normalise, characters="A")
-        gs.dataset(FONTS / "kouzan-gyosho.ttf", tmp_path / normalise, spec, jobs=0)
+        dataset(FONTS / "kouzan-gyosho.ttf", tmp_path / normalise, spec, jobs=0)
     (em,), (units,) = rows_of(tmp_path / "em"), rows_of(tmp_path / "units")
     metrics = gs.open_font(FONTS / "kouzan-gyosho.ttf").metrics
     assert (units["ascender"], units["descender"]) == (metrics.ascender, metrics.descender)

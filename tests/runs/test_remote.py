@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 from importlib import import_module
 from io import BytesIO
 from pathlib import Path
@@ -17,9 +18,8 @@ from typing import BinaryIO
 
 import pytest
 
-from glyphspline.datasets import plan
 from glyphspline.datasets.run import dataset
-from glyphspline.datasets.spec import DatasetSpec
+from glyphspline.datasets.spec import DatasetSpec, Sizes
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
 from glyphspline.runs import remote
 from glyphspline.runs.font_search import find_fonts
@@ -227,15 +227,12 @@ FONTS = sorted(str(path) for path in FONT.parent.glob("kouzan-*"))
 LETTERS = DatasetSpec(points=16, options=None)
 
 
-@pytest.fixture
-def small(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(plan, "SHARD", 12)
-    monkeypatch.setattr(plan, "CHUNK", 4)
+make = partial(dataset, sizes=Sizes(shard=12, chunk=4))
 
 
 @pytest.fixture
-def expected(small: None, tmp_path: Path) -> dict[str, bytes]:
-    dataset(FONTS, tmp_path / "here", LETTERS, jobs=0)
+def expected(tmp_path: Path) -> dict[str, bytes]:
+    make(FONTS, tmp_path / "here", LETTERS, jobs=0)
     found = content(tmp_path / "here")
     assert len([name for name in found if name.startswith("data/")]) > 4
     return found
@@ -252,18 +249,18 @@ def test_a_run_goes_on_after_its_server_was_killed(
             server.kill()
 
     with pytest.raises(OutputError, match="does not answer"):
-        dataset(FONTS, "s3://bucket/resumed/", LETTERS, jobs=0, observer=kill)
+        make(FONTS, "s3://bucket/resumed/", LETTERS, jobs=0, observer=kill)
     before = {path: path.stat().st_mtime_ns for path in there.rglob("*.parquet")}
     server.start()
     assert 1 <= len(before) < len(expected) - 3
     done: list[int] = []
-    dataset(FONTS, "s3://bucket/resumed", LETTERS, jobs=0, observer=lambda number, total, failed: done.append(number))
+    make(FONTS, "s3://bucket/resumed", LETTERS, jobs=0, observer=lambda number, total, failed: done.append(number))
     assert done[0] > 12, "what is finished is made again"
     assert content(there) == expected
     assert {path: path.stat().st_mtime_ns for path in before} == before
     assert not [name for name, found in content(there).items() if SECRET.encode() in found]
     with pytest.raises(OutputError, match="holds another data set"):
-        dataset(FONTS, "s3://bucket/resumed", DatasetSpec(points=17, options=None), jobs=0)
+        make(FONTS, "s3://bucket/resumed", DatasetSpec(points=17, options=None), jobs=0)
 
 
 @pytest.mark.needs("distributed")
@@ -287,6 +284,6 @@ def test_a_cluster_that_loses_a_worker_and_a_server_that_is_restarted_do_not_sho
                 happened.append(done)
                 threading.Timer(2.0, server.start).start()
 
-        dataset("s3://bucket/installed", "s3://bucket/far", LETTERS, scheduler=cluster.scheduler_address, observer=harm)
+        make("s3://bucket/installed", "s3://bucket/far", LETTERS, scheduler=cluster.scheduler_address, observer=harm)
     assert happened
     assert content(server.folder / "bucket" / "far") == expected
