@@ -130,7 +130,7 @@ def arguments(value: Any, default: Any) -> dict[str, list[str]]:
         elif name in known and own != usual:
             flag, _, off = known[name].flags[0].partition("/")
             switch = {True: [flag], False: [off]} if isinstance(own, bool) else {}
-            found[name] = switch.get(own) or [flag, _text(own, known[name].about)]
+            found[name] = switch.get(own) or [flag, text_of(own, known[name].about)]
     return found
 
 
@@ -141,7 +141,7 @@ def instance_arguments(face_index: int, location: Mapping[str, float]) -> list[s
     return [*words, "--location", place] if place else words
 
 
-def _text(value: Any, about: About) -> str:
+def text_of(value: Any, about: About) -> str:
     """A value as the command line has it."""
     for word, named in about.words.items():
         if value == named:

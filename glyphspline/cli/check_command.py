@@ -8,23 +8,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args
 
-import typer
-
 from ..checks.kinds import KINDS, LEVELS, Level, Thresholds
 from ..errors import OptionError
 from ..fields import options_of
-from ..files import make_place, write_made
+from ..files import make_place
 from . import arguments as opt
 from .config import CHECK, names_of, settings
 from .groups import Shown, collected, grouped, only
-from .messages import progress, say, stop
+from .messages import STDOUT, progress, put, say, stop
 from .running import chosen, say_face
 
 if TYPE_CHECKING:
     from ..readers import Source
     from ..runs.jobs.check import Asked
-
-STDOUT = Path("-")
 
 
 @grouped
@@ -152,10 +148,10 @@ def project_settings() -> tuple[Asked, opt.Subset, opt.Instance]:
     Raises:
         GlyphsplineError: a setting is no option of the command, or unusable.
     """
-    groups: list[Any] = [opt.CheckOptions(), opt.ReportOptions(), opt.Subset(), opt.Instance(), opt.RunOptions()]
+    groups: list[Any] = [opt.CheckOptions, opt.ReportOptions, opt.Subset, opt.Instance, opt.RunOptions]
     named = ((one.flags, one.name) for group in groups for one in options_of(group))
     given = settings(None, names_of(named), CHECK)
-    options, report, subset, instance, _ = (collected(group, Shown(), given) for group in groups)
+    options, report, subset, instance, _ = (collected(group(), Shown(), given) for group in groups)
     return asked_of(options, report), subset, instance
 
 
@@ -178,15 +174,3 @@ def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
     if corner_angle is not None:
         found["corner_angle"] = corner_angle
     return Thresholds(**found)
-
-
-def put(path: Path, content: str | bytes) -> None:
-    """Write a file, or standard output.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    if path == STDOUT and isinstance(content, str):
-        typer.echo(content, nl=not content.endswith("\n"))
-        return
-    write_made(path, content.encode(errors="replace") if isinstance(content, str) else content)  # of paths

@@ -11,7 +11,7 @@ from ..errors import GlyphsplineError
 from ..fields import About
 from . import arguments as opt
 from .groups import grouped, only
-from .messages import print_json, progress, say
+from .messages import print_json, progress, put, say
 from .running import say_face, say_missing
 from .tables import difference_lines, differences_table
 
@@ -116,7 +116,6 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
     Raises:
         OutputError: the file cannot be written.
     """
-    from ..files import write_made
     from ..outlines.outline import Outline
     from ..report.comparison import comparison_page
 
@@ -130,4 +129,4 @@ def write_page(path: Path, old: Source, new: Source, found: FontDifference) -> N
         facts.append(f"the worst {DRAWN} of {len(found.differences)} are drawn")
     heading = f"{old.path.name} and {new.path.name}"
     page = comparison_page(heading, facts, list(zip(worst, *read, strict=True)), found.tolerance)
-    write_made(path, page.encode())
+    put(path, page)

@@ -12,7 +12,7 @@ import typer
 from typer.core import TyperCommand
 
 from ..errors import OptionError
-from ..fields import CORNERS, About, Described, described, option, options_of
+from ..fields import CORNERS, About, Described, described, option, options_of, text_of
 from ..fitting.options import FONTS, FOR_FONTS, PRESETS, Options, Preset
 from .messages import UNDONE, errors, listen
 
@@ -169,17 +169,12 @@ def _option(one: Described, default: Any) -> Parameter:
     """An option as a parameter for typer. A tuple is written between commas."""
     kind, about = one.kind, one.about
     if about.words or get_origin(kind) is tuple:
-        kind, default = str, _written(default, about.words)
+        kind, default = str, text_of(default, about) or None
     more = {"parser": PARSERS[kind]} if kind in (int, float) else {}
     made = typer.Option(
         *one.flags, help=about.help, rich_help_panel=about.panel, metavar=about.metavar, **more | dict(about.more)
     )
     return _parameter(one.name, Annotated[kind | None if default is None else kind, made], default)
-
-
-def _written(value: Any, words: Mapping[str, Any]) -> str | None:
-    named = [word for word, meant in words.items() if meant == value]
-    return named[0] if named else ",".join(value) or None if isinstance(value, tuple) else str(value)
 
 
 def _read(one: Described, value: Any) -> Any:

@@ -12,9 +12,12 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any, NoReturn
 
 import typer
+
+from ..files import write_made
 
 DONE, UNDONE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 
@@ -26,6 +29,9 @@ RULE = (
 """The exit status, one rule for all commands, as the help says it."""
 
 INTERRUPTION = "interrupted; the same command goes on from here"
+
+STDOUT = Path("-")
+"""Stands for standard output."""
 
 QUIET = "GLYPHSPLINE_QUIET"
 """Environment variable that keeps processes from reporting that they compile, as in :mod:`..compiled`."""
@@ -62,6 +68,18 @@ def say(line: str) -> None:
 def print_json(facts: Any) -> None:
     """Print JSON data on standard output."""
     typer.echo(json.dumps(facts, indent=1, ensure_ascii=False))
+
+
+def put(path: Path, content: str | bytes) -> None:
+    """Write a file, or standard output.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    if path == STDOUT:
+        typer.echo(content, nl=isinstance(content, str) and not content.endswith("\n"))
+    else:
+        write_made(path, content.encode(errors="replace") if isinstance(content, str) else content)  # of paths
 
 
 class Logged(logging.Handler):

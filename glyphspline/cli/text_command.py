@@ -12,13 +12,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..errors import GlyphsplineError, OptionError
-from ..files import write_made
 from ..fitting.options import Options
 from ..types import INCHES, listed, shortened
 from ..writers.settings import Maps, Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
-from .messages import say
+from .messages import put, say
 from .running import say_face
 
 if TYPE_CHECKING:
@@ -89,10 +88,7 @@ def text(
             length("offset", along.offset, em, look) or 0.0, lines.fit_width, maps,
         ), executor)  # fmt: skip
     for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
-        if str(file) == "-":
-            sys.stdout.buffer.write(drawing)
-        else:
-            write_made(file, drawing)
+        put(file, drawing)
     remarks = [
         *missing(layout),
         *pulled_apart(layout),
