@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from .errors import OutputError, words_of
+from .errors import GlyphsplineError, OutputError, words_of
 
 PARTIAL = ".part"
 """Suffix of temporary files. Their names begin with a dot, so globs over results do not match them."""
@@ -26,6 +26,16 @@ def writing(path: Path | str) -> Iterator[None]:
         raise
     except OSError as error:
         raise OutputError(f"cannot be written: {words_of(error)}", font=str(path)) from error
+
+
+@contextmanager
+def reading(path: Path | str, kind: type[GlyphsplineError] = OutputError, form: str = "") -> Iterator[None]:
+    """Turn an error of reading or parsing within into one that names the file, and the ``form`` it has not."""
+    try:
+        yield
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        what = f"is not {form}" if form and not isinstance(error, OSError) else "cannot be read"
+        raise kind(f"{what}: {words_of(error)}", font=str(path)) from error
 
 
 def make_place(path: Path) -> None:

@@ -9,8 +9,8 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from ..errors import GlyphsplineError, words_of
-from ..files import writing
+from ..errors import GlyphsplineError
+from ..files import reading, writing
 from .finding import SMALLER_IS_WORSE, Finding, badness
 
 FORMAT = "glyphspline baseline 1"
@@ -70,12 +70,8 @@ class Baseline:
         Raises:
             GlyphsplineError: the file cannot be read, or is none.
         """
-        try:
+        with reading(path, GlyphsplineError, "JSON"):
             data: Any = json.loads(path.read_text(encoding="utf-8"))
-        except OSError as error:
-            raise GlyphsplineError(f"cannot be read: {words_of(error)}", font=str(path)) from error
-        except ValueError as error:
-            raise GlyphsplineError(f"is not JSON: {error}", font=str(path)) from error
         if not isinstance(data, Mapping) or data.get("format") != FORMAT:
             raise GlyphsplineError(f"is no baseline: its format is not {FORMAT!r}", font=str(path))
         baseline = cls()

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from ..checks.kinds import Thresholds
-from ..errors import GlyphsplineError, words_of
+from ..errors import GlyphsplineError
+from ..files import reading
 
 PROJECT = "pyproject.toml"
 
@@ -73,12 +74,8 @@ def settings(path: Path | None, names: Mapping[str, str], command: str | None = 
 
 
 def _read(file: Path) -> Mapping[str, Any]:
-    try:
+    with reading(file, GlyphsplineError, "TOML"):
         table = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise GlyphsplineError(f"cannot be read: {words_of(error)}", font=str(file)) from error
-    except ValueError as error:
-        raise GlyphsplineError(f"is not TOML: {error}", font=str(file)) from error
     if file.name == PROJECT:
         return _table(_table(table.get("tool", {}), "tool", file).get("glyphspline", {}), "tool.glyphspline", file)
     return table

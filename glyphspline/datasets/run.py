@@ -16,6 +16,7 @@ from typing import Any
 
 from ..errors import GlyphsplineError, OptionError, OutputError
 from ..extras import need
+from ..files import reading
 from ..runs import remote
 from ..runs.engine import Item, Job, Observer, reason, run
 from ..runs.folder import locked
@@ -185,11 +186,8 @@ def _record(out: str) -> dict[str, Any] | None:
     path = f"{out}/{RECORD}"
     if not remote.exists(path):
         return None
-    with remote.read(path) as file:
-        try:
-            record = json.loads(file.read())
-        except ValueError as error:
-            raise OutputError(f"cannot be read: {error}", font=path) from error
+    with remote.read(path) as file, reading(path):
+        record = json.loads(file.read())
     if not (isinstance(record, dict) and {"glyphspline", "spec"} <= record.keys()):
         raise OutputError("is of no data set: give another folder", font=path)
     return record

@@ -26,7 +26,7 @@ from typing import Any, BinaryIO, NamedTuple
 from filelock import FileLock, Timeout
 
 from ..errors import OutputError, words_of
-from ..files import O_BINARY, make_folder, remove_partials, replacing, sizes, writing
+from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, writing
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from .engine import Job, Observer, Part, run
@@ -244,14 +244,13 @@ def entries_of(out: Path) -> Iterator[dict[str, Any]]:
         OutputError: there is no manifest, or a line of it cannot be read.
     """
     path = out / MANIFEST
-    try:
-        with open(path, encoding="utf-8") as file:
-            for line in file:
-                yield json.loads(line)
-    except FileNotFoundError:
-        raise OutputError("no manifest: the folder holds no finished run", font=str(path)) from None
-    except ValueError as error:
-        raise OutputError(f"cannot be read: {error}", font=str(path)) from error
+    if not path.exists():
+        raise OutputError("no manifest: the folder holds no finished run", font=str(path))
+    with open(path, encoding="utf-8") as file:
+        for line in file:
+            with reading(path):
+                entry = json.loads(line)
+            yield entry
 
 
 def recorded_lines(out: Path, record: Record) -> Iterator[tuple[int, bytes | None, bytes]]:

@@ -6,7 +6,8 @@ import glob
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from ..errors import GlyphsplineError, words_of
+from ..errors import GlyphsplineError
+from ..files import reading
 from ..readers.open import STDIN, AnySource, open_source
 from ..readers.source import Location
 from .remote import fetch_fonts, local_path
@@ -59,10 +60,8 @@ def is_ufo(path: Path) -> bool:
 
 
 def _listed(path: Path) -> list[str]:
-    try:
+    with reading(path, GlyphsplineError):
         lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise GlyphsplineError(f"cannot be read: {words_of(error)}", font=str(path)) from error
     named = [line.strip() for line in lines if line.strip() and not line.lstrip().startswith("#")]
     nested = [line for line in named if line.startswith("@")]
     if nested:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ..curves.bspline import Spline
-from ..errors import OutputError, words_of
+from ..files import reading
 from ..fitting.convert_masters import MastersContourResult, MastersResult
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
@@ -57,10 +57,8 @@ def stored(path: Path, kind: type[Result]) -> Result:
     Raises:
         OutputError: the file cannot be read, or holds no such result.
     """
-    try:
+    with reading(path):
         return from_text(path.read_text(encoding="utf-8"), kind)
-    except (OSError, ValueError) as error:
-        raise OutputError(f"cannot be read: {words_of(error)}", font=str(path)) from error
 
 
 def _plain(value: Any) -> Any:

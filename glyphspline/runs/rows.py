@@ -14,9 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import OutputError, words_of
 from ..extras import need
-from ..files import replacing, sizes, write_whole, writing
+from ..files import reading, replacing, sizes, write_whole, writing
 from ..writers.parquet import schema, write_rows
 
 UNFINISHED = ".unfinished"
@@ -180,11 +179,8 @@ class Rows:
 
         if kept:
             return pa.concat_tables([table_in(part.rows) for part in self._kept.chunk(number)])
-        try:
-            with parquet.ParquetFile(self._path) as file:
-                return file.read_row_group(number)
-        except (OSError, pa.ArrowException) as error:
-            raise OutputError(f"cannot be read: {words_of(error)}", font=str(self._path)) from error
+        with reading(self._path), parquet.ParquetFile(self._path) as file:
+            return file.read_row_group(number)
 
 
 def _row_groups(path: Path) -> list[list[int]]:

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OptionError, OutputError, is_positive, require, words_of
+from ..errors import GlyphsplineError, OptionError, is_positive, require
 from ..fields import WRITTEN, arguments, check, instance_arguments, option
-from ..files import write_whole
+from ..files import reading, write_whole
 from ..fitting.options import Options
 from ..report import FOLDER as GALLERY
 from ..report import SUFFIX
@@ -297,15 +297,13 @@ def read_run(out: Path) -> dict[str, Any] | None:
         OutputError: there is one, and it cannot be read.
     """
     path = out / RUN_FILE
-    try:
+    if not path.exists():
+        return None
+    with reading(path):
         run = json.loads(path.read_text(encoding="utf-8"))
         scale = run["curvature_scale"]
         if not (scale is None or (isinstance(scale, float | int) and math.isfinite(scale))):
             raise ValueError("a curvature scale that is no number")
-    except FileNotFoundError:
-        return None
-    except (OSError, ValueError, TypeError, KeyError) as error:
-        raise OutputError(f"cannot be read: {words_of(error)}", font=str(path)) from error
     return dict(run)
 
 
