@@ -48,32 +48,20 @@ def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
 
 def contours_of(path: Any) -> list[Contour]:
     """The contours of a ``pathops.Path``."""
-    from fontTools.pens.basePen import decomposeQuadraticSegment
+    from pathops import PathVerb
 
     found: list[Contour] = []
     segments: list[FloatArray] = []
     start = here = (0.0, 0.0)
-
-    def close() -> None:
-        if segments and here != start:
-            segments.append(np.array([here, start]))
-        if segments:
-            found.append(Contour.from_segments(segments))
-        segments.clear()
-
-    for verb, points in path.segments:
-        if verb in ("moveTo", "closePath", "endPath"):
-            close()
-            start = here = points[0] if points else start
+    for verb, points in [*path, (PathVerb.CLOSE, ())]:
+        if verb not in (PathVerb.MOVE, PathVerb.CLOSE):
+            segments.append(np.array([here, *points]))
+            here = points[-1]
             continue
-        if verb == "qCurveTo" and points[-1] is None:  # a contour without a point on the curve begins midway
-            (ax, ay), (bx, by) = points[-2], points[0]
-            start = here = ((ax + bx) / 2, (ay + by) / 2)
-            points = (*points[:-1], start)
-        for to in decomposeQuadraticSegment(points) if verb == "qCurveTo" else [points]:
-            segments.append(np.array([here, *to]))
-            here = to[-1]
-    close()
+        if segments:
+            found.append(Contour.from_segments([*segments, *([np.array([here, start])] if here != start else [])]))
+        segments = []
+        start = here = points[0] if points else start
     return found
 
 
