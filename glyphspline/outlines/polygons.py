@@ -104,39 +104,26 @@ def uncrossed(polygons: Sequence[FloatArray]) -> list[FloatArray]:
 
 
 def _crossing(points: FloatArray, sides: FloatArray, follows: IntArray, starts: IntArray) -> Iterator[IntArray]:
-    """(k, 2) pairs of sides that cross, of pairs of polygons whose boxes overlap."""
+    """(k, 2) pairs of sides that cross, of those whose boxes overlap; neighbours meet and do not cross.
+
+    The first is of the polygon that begins farther to the left.
+    """
     low, high = np.minimum(points, points + sides), np.maximum(points, points + sides)
-    spans = [(a, b) for a, b in pairwise(starts.tolist()) if b > a]
-    boxes = np.array([[*low[a:b].min(axis=0), *high[a:b].max(axis=0)] for a, b in spans])
-    spans = [spans[k] for k in np.argsort(boxes[:, 0], kind="stable")]
-    boxes = boxes[np.argsort(boxes[:, 0], kind="stable")]
-    for c, (a, b) in enumerate(spans):
-        box = boxes[c]
-        last = int(np.searchsorted(boxes[:, 0], box[2], side="right"))
-        near = c + np.flatnonzero((boxes[c:last, 1] <= box[3]) & (boxes[c:last, 3] >= box[1]))
-        for d in near.tolist():
-            e, f = spans[d]
-            common = np.maximum(box[:2], boxes[d, :2]), np.minimum(box[2:], boxes[d, 2:])
-            one, other = (
-                u + np.flatnonzero((low[u:v] <= common[1]).all(axis=1) & (high[u:v] >= common[0]).all(axis=1))
-                for u, v in ((a, b), (e, f))
-            )
-            for part in np.array_split(one, 1 + len(one) * len(other) // 1_000_000):
-                yield _pairs(points, sides, follows, part, other)
-
-
-def _pairs(points: FloatArray, sides: FloatArray, follows: IntArray, one: IntArray, other: IntArray) -> IntArray:
-    """(k, 2) pairs of a side of the one and a side of the other that cross; of equal sets each pair once."""
-    p, q, r, s = points[one], sides[one], points[other], sides[other]
-    begin = r[None] - p[:, None]
-    left = cross(q[:, None], begin) > 0
-    split = left != (cross(q[:, None], begin + s[None]) > 0)
-    split &= (cross(s[None], -begin) > 0) != (cross(s[None], q[:, None] - begin) > 0)
-    if len(one) and len(other) and one[0] <= other[-1] and other[0] <= one[-1]:  # of one polygon
-        split &= one[:, None] < other[None]
-        split &= (follows[one][:, None] != other[None]) & (follows[other][None] != one[:, None])
-    k, m = np.nonzero(split)
-    return np.stack([one[k], other[m]], axis=1)
+    lefts = [low[a:b, 0].min(initial=np.inf) for a, b in pairwise(starts.tolist())]
+    rank = np.argsort(np.argsort(np.repeat(lefts, np.diff(starts)), kind="stable"))
+    order = np.argsort(low[:, 0], kind="stable")
+    counts = np.searchsorted(low[order, 0], high[order, 0], side="right") - np.arange(len(order)) - 1
+    for part in np.array_split(np.arange(len(order)), 1 + int(counts.sum()) // 1_000_000):
+        first = np.repeat(part, counts[part])
+        behind = np.arange(len(first)) - np.repeat(offsets_of(counts[part])[:-1], counts[part])
+        i, j = order[first], order[first + 1 + behind]
+        i, j = np.where(rank[i] < rank[j], [i, j], [j, i])
+        near = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1]) & (follows[i] != j) & (follows[j] != i)
+        i, j = i[near], j[near]
+        begin, q, s = points[j] - points[i], sides[i], sides[j]
+        split = (cross(q, begin) > 0) != (cross(q, begin + s) > 0)
+        split &= (cross(s, -begin) > 0) != (cross(s, q - begin) > 0)
+        yield np.stack([i[split], j[split]], axis=1)
 
 
 def _loops(after: IntArray, order: IntArray) -> Iterator[list[int]]:
