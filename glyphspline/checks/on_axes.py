@@ -107,8 +107,7 @@ def kinks_of(
     parts, smooth = [], smooth_joints(along_axes)
     for along in along_axes:
         rows = along.rows.chosen(np.flatnonzero(along.turns >= thresholds.kink))
-        users = [dict(zip([axis.tag for axis in along.axes], at, strict=True)) for at in rows.locations.tolist()]
-        at = [glyphs[g].normalised(user) for g, user in zip(rows.glyphs.tolist(), users, strict=True)]
+        at = [[axis.normalised(x) for axis, x in zip(along.axes, at, strict=True)] for at in rows.locations.tolist()]
         parts.append(rows._replace(locations=np.array(at).reshape(rows.locations.shape)))
     parts += [_off_axes(g, masters, location, axes, thresholds.kink) for g, masters in enumerate(glyphs)]
     rows = Measured.joined(parts)
@@ -117,14 +116,14 @@ def kinks_of(
     for k, (g, contour, joint) in enumerate(joints_of(rows)):
         turn, made = rows.numbers[k, 1:3]
         of_contour = glyphs[g].contours[contour]
-        lines = of_contour.degrees[joint - 1] == of_contour.degrees[joint] == 1
-        meant = lines and turn - made >= thresholds.kink
-        weights = glyphs[g].weights_at(rows.locations[k])
+        degrees = of_contour.degrees[[joint - 1, joint]]
+        meant = (degrees == 1).all() and turn - made >= thresholds.kink
         if (g, contour) not in controls:
             controls[g, contour] = joint_controls(of_contour)
-        own, degrees = controls[g, contour][:, joint], of_contour.degrees[[joint - 1, joint]]
-        rounded = thresholds.rounding * by_rounding(own, degrees, weights)
-        arm = _arm(own, weights)
+        own = controls[g, contour][:, joint]
+        here = np.tensordot(glyphs[g].weights_at(rows.locations[k]), own, axes=1)
+        rounded = thresholds.rounding * by_rounding(own[0], here, degrees)
+        arm = min(arc(points) for points in here.view(np.complex128)[..., 0])
         rows.numbers[k, 4] = turn / thresholds.corner_angle * arm
         if (g, contour, joint) in smooth and turn >= rounded and np.radians(turn) * arm >= height and not meant:
             kept.append(k)
@@ -149,30 +148,21 @@ def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Seq
     return Measured.joined(parts, len(base))
 
 
-def by_rounding(controls: FloatArray, degrees: IntArray, weights: FloatArray) -> float:
-    """Standard deviation in degrees of a joint that rounding turns, at (K,) weights of the masters.
+def by_rounding(default: FloatArray, here: FloatArray, degrees: IntArray) -> float:
+    """Standard deviation in degrees of a joint that rounding turns, see :func:`.segments.rounding_turn`.
+
+    It is 0 where the default master is not in whole units. Deltas are whole too. Those of points between others are
+    not, but no farther off.
 
     Args:
-        controls: (K, 2, 4, 2) of :func:`.turns.joint_controls`. degrees: (2,) of the segments before and behind.
-
-    See :func:`.segments.rounding_turn`.
-
-    It is 0 where the default master is not in whole units.
-
-    Deltas are whole too. Those of points between others are not, but no farther off.
+        default, here: (2, 4, 2) in the default master and where it is looked at, of :func:`.turns.joint_controls`.
+        degrees: (2,) of the segments before and behind.
     """
-    handles = 3 / degrees[:, None] * (controls[0, :, 1] - controls[0, :, 0])  # segments are raised to cubics
+    handles = 3 / degrees[:, None] * (default[:, 1] - default[:, 0])  # segments are raised to cubics
     if np.abs(handles - np.rint(handles)).max() > 1e-6:
         return 0.0
-    here = np.tensordot(weights, controls, axes=1)
     before, behind = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
     return float(np.degrees(rounding_turn(before, behind)))
-
-
-def _arm(controls: FloatArray, weights: FloatArray) -> float:
-    """Length of the shorter segment at a joint, at (K,) weights of the masters: see :func:`.segments.arc`."""
-    here = np.tensordot(weights, controls, axes=1)
-    return min(arc(points) for points in here.view(np.complex128)[..., 0])
 
 
 def _worst(rows: Measured) -> Measured:

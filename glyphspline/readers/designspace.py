@@ -8,11 +8,9 @@ masters it is interpolated by fontTools' model of variations, from which variabl
 
 from __future__ import annotations
 
-import hashlib
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -93,13 +91,8 @@ class Designspace(Source):
         self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
         self._components: dict[str, tuple[Masters, list[int | None]]] = {}
 
-    @cached_property
-    def sha256(self) -> str:
-        """Hash of the document and of all its UFOs, in hexadecimal."""
-        digest = hashlib.sha256(self.path.read_bytes())
-        for ufo in self._ufos:
-            digest.update(ufo.sha256.encode())
-        return digest.hexdigest()
+    def _bytes(self) -> Iterable[bytes]:
+        return self.path.read_bytes(), *(ufo.sha256.encode() for ufo in self._ufos)
 
     def _outline(self, head: Head) -> Outline:
         """The glyph at the location, by the pen of all readers: it drops what has no length there."""
@@ -280,10 +273,8 @@ class GlyphsFile(Designspace):
         )
         super().__init__(path, location, Path(made.designspace_path))
 
-    @cached_property
-    def sha256(self) -> str:
-        """Hash of the file's bytes, in hexadecimal."""
-        return hashlib.sha256(self.path.read_bytes()).hexdigest()
+    def _bytes(self) -> Iterable[bytes]:
+        return (self.path.read_bytes(),)
 
     def master_ids(self, ids: Sequence[str]) -> dict[Path, str]:
         """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import math
 from abc import ABC, abstractmethod
@@ -96,10 +97,17 @@ class Source(ABC):
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self).opened, (self.path, dict(self.location)) if self.axes else (self.path,)
 
-    @property
-    @abstractmethod
+    @cached_property
     def sha256(self) -> str:
         """Hash of the bytes read, in hexadecimal."""
+        digest = hashlib.sha256()
+        for part in self._bytes():
+            digest.update(part)
+        return digest.hexdigest()
+
+    @abstractmethod
+    def _bytes(self) -> Iterable[bytes]:
+        """What is hashed."""
 
     @cached_property
     def cap_height(self) -> float | None:

@@ -7,14 +7,12 @@ contain name, code points and metrics. For others the file's name is the glyph's
 
 from __future__ import annotations
 
-import hashlib
 import math
 import re
 import warnings
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -62,7 +60,12 @@ class SvgDrawings(Source):
     def __init__(self, path: Path) -> None:
         self.path, self.family, self.style = path, path.stem, "Regular"
         self._files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
-        read = [(file.stem, self._read_or_broken(file)) for file in self._files]
+        read = list[tuple[str, Outline | FontError]]()
+        for file in self._files:
+            try:
+                read.append((file.stem, read_drawing(file)))
+            except FontError as error:  # raised when the drawing is asked for
+                read.append((file.stem, error))
         outlines = [one for _, one in read if isinstance(one, Outline)]
         if not outlines:
             raise next((one for _, one in read if isinstance(one, FontError)), FontError("no SVG drawings"))
@@ -79,18 +82,8 @@ class SvgDrawings(Source):
         self.metrics = min(outlines, key=lambda outline: outline.gid).metrics
         self.cmap = first_claims((outline.name, outline.unicodes) for outline in outlines)
 
-    @cached_property
-    def sha256(self) -> str:
-        """Hash of the bytes of all drawings in the order of their names, in hexadecimal."""
-        return hashlib.sha256(b"".join(file.read_bytes() for file in self._files)).hexdigest()
-
-    @staticmethod
-    def _read_or_broken(file: Path) -> Outline | FontError:
-        """A drawing, or the error that is raised when it is asked for."""
-        try:
-            return read_drawing(file)
-        except FontError as error:
-            return error
+    def _bytes(self) -> Iterable[bytes]:
+        return (file.read_bytes() for file in self._files)
 
     def _outline(self, head: Head) -> Outline:
         found = self._outlines[head.name]

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -74,14 +72,10 @@ class Ufo(Source):
         claims = {name: self._claims(name, broken) for name in self.default_layer.contents}
         self.cmap = first_claims((name, claims[name]) for name in self.glyph_names)
 
-    @cached_property
-    def sha256(self) -> str:
-        """Hash of the names and contents of all files, in hexadecimal."""
-        digest = hashlib.sha256()
+    def _bytes(self) -> Iterable[bytes]:
         for file in _files(self.path):
             content = file.read_bytes()
-            digest.update(f"{file.relative_to(self.path).as_posix()}\0{len(content)}\0".encode() + content)
-        return digest.hexdigest()
+            yield f"{file.relative_to(self.path).as_posix()}\0{len(content)}\0".encode() + content
 
     def _outline(self, head: Head) -> Outline:
         pen, glyph = self._drawn(head.name)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -119,10 +118,8 @@ class Font(Source):
             tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
         return self._hb.face.glyph_count, len(self._hb.face.unicodes) if tables & UNICODE_CMAPS else 0
 
-    @cached_property
-    def sha256(self) -> str:
-        """Hash of the file's bytes, in hexadecimal."""
-        return hashlib.sha256(self._data).hexdigest()
+    def _bytes(self) -> Iterable[bytes]:
+        return (self._data,)
 
     def tables(self) -> TTFont:
         """A new copy of all tables, to be changed; those of a variable font are at the default and keep the axes."""
