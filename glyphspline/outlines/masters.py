@@ -108,7 +108,7 @@ class Masters:
             of the regions.
         advances: (K,) advances of the masters.
         notes: one sentence for each part that the reader left out.
-        repeats: of points that all masters have more than once; see :class:`.Contours`.
+        repeats: of points that all masters have more than once; see :class:`.Contours`. None if there are none.
     """
 
     name: str
@@ -124,6 +124,8 @@ class Masters:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "contours", tuple(self.contours))
+        if self.repeats is not None and not self.repeats.any():
+            object.__setattr__(self, "repeats", None)
 
     @classmethod
     def of(cls, outline: Outline) -> Masters:

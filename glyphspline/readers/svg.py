@@ -63,21 +63,19 @@ class SvgDrawings(Source):
         read = list[tuple[str, Outline | FontError]]()
         for file in self._files:
             try:
-                read.append((file.stem, read_drawing(file)))
+                one = read_drawing(file)
+                read.append((one.name, one))
             except FontError as error:  # raised when the drawing is asked for
                 read.append((file.stem, error))
         outlines = [one for _, one in read if isinstance(one, Outline)]
         if not outlines:
             raise next((one for _, one in read if isinstance(one, FontError)), FontError("no SVG drawings"))
         unknown = math.inf if any(outline.gid for outline in outlines) else 0
-        numbered = [
-            (one.gid, one.name, one) if isinstance(one, Outline) else (unknown, name, one) for name, one in read
-        ]
         self._outlines: dict[str, Outline | FontError] = {}
-        for _, name, one in sorted(numbered, key=lambda each: each[0]):
+        for name, found in sorted(read, key=lambda each: each[1].gid if isinstance(each[1], Outline) else unknown):
             if name in self._outlines:
                 raise FontError("two drawings of one name", glyph=name)
-            self._outlines[name] = one
+            self._outlines[name] = found
         self.glyph_names = tuple(self._outlines)
         self.metrics = min(outlines, key=lambda outline: outline.gid).metrics
         self.cmap = first_claims((outline.name, outline.unicodes) for outline in outlines)
