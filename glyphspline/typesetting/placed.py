@@ -104,7 +104,7 @@ class Layout:
             scale = metrics.units_per_em / font.metrics.units_per_em
             made = iter(font.outlines([gid for gid in gids if (k, gid) not in self.unusable], errors="return"))
             read = [
-                GlyphsplineError(self.unusable[k, gid], font=str(font.path), glyph=font.glyph_names[gid])
+                GlyphsplineError(self.unusable[k, gid], font=str(font.path), glyph=_name(font, gid))
                 if (k, gid) in self.unusable
                 else next(made)
                 for gid in gids
@@ -182,7 +182,7 @@ class Layout:
         outlines = []
         for (font, gid), read in zip(self.distinct(), self.outlines(), strict=True):
             if isinstance(read, GlyphsplineError):
-                read = Outline(self.fonts[font].glyph_names[gid], gid, notes=(f"{LEFT_OUT}: {read}",))
+                read = Outline(_name(self.fonts[font], gid), gid, notes=(f"{LEFT_OUT}: {read}",))
             outlines.append(read)
         parts = Parts(outlines, self.which, self.origin, self.angle)
         return joined_where_touching(parts) if united else parts
@@ -222,6 +222,11 @@ def _rounded_anew(parts: Parts, precision: int) -> bool:
     steps = parts.origin * 10.0**precision
     quarters = parts.angle * (2.0 / np.pi)
     return any(bool(np.abs(values - np.round(values)).max(initial=0.0) > 1e-6) for values in (steps, quarters))
+
+
+def _name(font: Source, gid: int) -> str:
+    """The name of a glyph; a font's characters may stand for glyphs that it does not have."""
+    return font.glyph_names[gid] if gid < len(font.glyph_names) else f"glyph{gid:05}"
 
 
 def _scaled(outline: Outline | GlyphsplineError, scale: float, metrics: FontMetrics) -> Outline | GlyphsplineError:

@@ -74,8 +74,8 @@ class Font(Source):
             raise FontError(f"has no outlines: {what}")
         self.outer = -1 if "glyf" in tables else 1
         names, variations = tables.get("name"), tables.get("fvar")
-        self.family = (names and names.getBestFamilyName()) or path.stem
-        self.style = (names and names.getBestSubFamilyName()) or "Regular"
+        self.family = printable((names and names.getBestFamilyName()) or "") or path.stem
+        self.style = printable((names and names.getBestSubFamilyName()) or "") or "Regular"
         if variations:
 
             def name_of(name_id: int) -> str | None:
@@ -98,7 +98,12 @@ class Font(Source):
             extents = self.shaper.get_font_extents("ltr")
             self.metrics = replace(self.metrics, ascender=float(extents.ascender), descender=float(extents.descender))
         if named:
-            self.glyph_names = tuple(tables.getGlyphOrder())
+            order = tables.getGlyphOrder()
+            if not all(map(str.isprintable, order)):  # neither a UFO nor an SVG can have such names
+                taken = set(order)
+                order = [name if name.isprintable() else unused(f"glyph{k:05}", taken) for k, name in enumerate(order)]
+                tables.setGlyphOrder(order)
+            self.glyph_names = tuple(order)
             self.num_glyphs = len(self.glyph_names)
             check_characters(tables.reader["cmap"] if "cmap" in tables else b"")
             mapped = (tables.getBestCmap() or {}).items()
@@ -142,6 +147,19 @@ class Font(Source):
         from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
         return BulkReader(self.path, self.face_index, self.location, self._hb)
+
+
+def printable(text: str) -> str:
+    """A text without control characters, which XML cannot have."""
+    return "".join(filter(str.isprintable, text))
+
+
+def unused(name: str, taken: set[str]) -> str:
+    """A name that no glyph has, added to those taken."""
+    while name in taken:
+        name += "_"
+    taken.add(name)
+    return name
 
 
 def check_characters(data: bytes) -> None:
