@@ -118,10 +118,9 @@ def test_points_are_on_the_grid_asked_for(precision: int) -> None:
 def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArrays, int, int]]:
     """Contours of a glyph and what is stored for them, with the numbers of their points."""
     em = outline.metrics.units_per_em
-    found = quadratic_points(outline.arrays, OPTIONS, em / 1000, em)
-    assert found is not None
+    found, _ = quadratic_points(outline.arrays, OPTIONS, em / 1000, em)
     rows = []
-    for c, (points, on) in enumerate(found[0]):
+    for c, (points, on) in enumerate(found):
         own = outline.arrays.part(c, c + 1)
         stored = stored_points(own)
         assert stored is not None
@@ -190,6 +189,31 @@ def test_quadratics_that_stay_are_cubics_of_the_same_shape() -> None:
             assert set(contour.curve.degrees.tolist()) <= {1, 3}
             a, b = (gs.sample(each, step=0.5) for each in (contour.source, contour.curve))
             assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
+def test_quadratics_in_the_place_of_cubics_are_near_and_turn_no_more() -> None:
+    for outline in outlines(FONTS / "kouzan-gyosho.otf", "永g好龍"):
+        found, far = quadratic_points(outline.arrays, OPTIONS, 1.0, 1000.0)
+        assert far <= 1.0
+        for contour, (points, on) in zip(outline.contours, found, strict=True):
+            np.testing.assert_array_equal(points, np.rint(points))
+            made = of_points(points, on)
+            new = gs.Contour(made.points, made.degrees)
+            a, b = (gs.sample(each, step=0.5) for each in (contour, new))
+            assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+            old = kinks(contour)
+            for x, y, turn in kinks(new):
+                assert any(np.hypot(p - x, q - y) < 3.0 and turn <= was + 0.3 for p, q, was in old), outline.name
+
+
+def test_lines_are_left_along_them_where_the_grid_has_that_direction() -> None:
+    """Lines that rise by 3 in 7 steps, and a bow between them that begins and ends along them."""
+    points = [[0, 0], [140, 60], [210, 90], [290, 90], [360, 60], [500, 0], [500, -200], [0, -200]]
+    source = gs.Contour(np.array(points, dtype=np.float64), np.array([1, 3, 1, 1, 1, 1]))
+    (found,), far = quadratic_points(gs.Outline("bow", contours=(source,)).arrays, OPTIONS, 1.0, 1000.0)
+    made = of_points(*found)
+    assert kinks(gs.Contour(made.points, made.degrees)) == []
+    assert far <= 1.0
 
 
 def test_a_truetype_font_of_cubics_is_within_the_tolerance(tmp_path: Path) -> None:

@@ -20,13 +20,12 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import directions, length
-from ...curves.nearest import near_place
-from ...curves.pairing import pair_span, room_for
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import NO_HANDLE, Joints
 from .cubics import fit_between, is_straight
 from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump, harmonise
 from .lattice import round_run
+from .nearness import certified
 from .spline_curve import chord
 
 UPRIGHT = np.sin(np.radians(1.5))
@@ -299,33 +298,15 @@ def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits) 
     Args:
         P: (K, r, 4, 2) the cubics in all masters. run: those of one. source: (K, m, 4, 2).
     """
-    r, m, V = len(run.P), source.shape[1], len(limits.corners)
-    chain, other, tolerance = mixed(limits.corners, P), mixed(limits.corners, source), limits.tolerance
-    work, marks, found = room_for(V)
-    places, bad, arc = np.empty(r + 1), np.zeros(r, dtype=np.bool_), np.empty(0)
+    V, arc = len(limits.corners), np.empty(0)
+    chain, other = mixed(limits.corners, P), mixed(limits.corners, source)
     if len(source) > 1:
-        arc = np.array([0.0, r, i, i + run.places[r]])
+        arc = np.array([0.0, len(run.P), i, i + run.places[-1]])
         if run.closed:
             arc[::2], arc[1::2] = -np.inf, np.inf
-    for s in range(r + 1):
-        here = places[s] = float(i + run.places[s])
-        if run.kind[s] >= AXIS and s < r:
-            low = float(i + run.places[s - 1]) if s > 0 else here - 1.0
-            places[s] = near_place(V, other, here, (low + here) / 2, (here + i + run.places[s + 1]) / 2, chain, s)
-    if run.closed:
-        places[r] = places[0] + m
-    if places[0] < 0.0:
-        places += m
-    for s in range(r):
-        if run.held[s]:
-            continue
-        found[:] = 0.0
-        pair_span(
-            V, chain, s, 0.0, 1.0, other, places[s], places[s + 1], arc, True, tolerance, 0.02 * tolerance, work,
-            marks, found,
-        )  # fmt: skip
-        bad[s] = not (found[0] <= 0.999 * tolerance and np.isfinite(P[:, s]).all())
-    return bad
+    hints = (i + run.places).astype(np.float64)
+    bounds = certified(V, chain, hints, run.kind < AXIS, run.held, run.closed, other, arc, limits.tolerance)
+    return ~(bounds <= 0.999 * limits.tolerance)
 
 
 @compiled

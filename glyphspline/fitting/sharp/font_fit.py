@@ -254,6 +254,10 @@ def _new_findings(
     return wrong
 
 
+DENSER = 4.0
+"""How much finer a source of cubics is sampled: what follows it has more quadratics, each with samples inside."""
+
+
 def chains(cubics: FloatArray, degrees: IntArray, offsets: IntArray) -> ContourArrays:
     """Closed chains of lines and cubics (r, 4, 2) as contours, with offsets (C + 1,)."""
     needed = np.ones((len(cubics), 3), dtype=np.bool_)
@@ -263,29 +267,25 @@ def chains(cubics: FloatArray, degrees: IntArray, offsets: IntArray) -> ContourA
 
 def quadratic_points(
     source: ContourArrays, options: Options, tolerance: float, em: float
-) -> tuple[list[tuple[FloatArray, BoolArray]], float] | None:
-    """Points of contours of lines and quadratics, as TrueType stores them, and whether each is on the curve.
+) -> tuple[list[tuple[FloatArray, BoolArray]], float]:
+    """Points of contours as TrueType stores them, and whether each is on the curve.
 
     Returns:
-        These, and a bound of their distance from the source. None if a contour has cubics, or is off the grid.
+        These, and a bound of their distance from the source.
     """
-    if (source.degrees > 2).any() or np.abs(2 * source.points - np.rint(2 * source.points)).max(initial=0.0) > 1e-6:
-        return None
-    settings = EFFORTS[options.effort](
-        near=tolerance, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=False,
-        round_corners=False, margin=0.0, residual=0.0,
-    )  # fmt: skip
     found, reached = [], 0.0
     for c in range(source.num_contours):
         own = source.part(c, c + 1)
         stored = stored_points(own)
+        settings = EFFORTS[options.effort](
+            near=tolerance if stored else tolerance / DENSER, angle=float(np.radians(options.corner_angle)),
+            line=LONG_LINE * em, c2=False, round_corners=False, margin=0.0, residual=0.0,
+        )  # fmt: skip
+        points, on, far = fit_contour_quadratics(all_cubics(own), own.degrees, settings, tolerance, stored is not None)
         if stored is None:
-            return None
-        points, on, far = fit_contour_quadratics(all_cubics(own), own.degrees, settings, tolerance)
-        if 0 < len(points) < len(stored[0]):
-            made = of_points(points, on)
-            if not _more_findings(own, made, em):
-                stored, reached = begun_as(points, on, stored), max(reached, far)
+            stored, reached = (points, on), max(reached, far)
+        elif 0 < len(points) < len(stored[0]) and not _more_findings(own, of_points(points, on), em):
+            stored, reached = begun_as(points, on, stored), max(reached, far)
         found.append(stored)
     return found, reached
 
@@ -293,8 +293,10 @@ def quadratic_points(
 def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None:
     """The points of one contour as TrueType stores them, without those midway between control points.
 
-    None if one is off the grid.
+    None if one is off the grid, or a segment is a cubic.
     """
+    if (contour.degrees > 2).any():
+        return None
     points, first = contour.points, offsets_of(contour.degrees)
     on = np.zeros(len(points), dtype=np.bool_)
     on[first[:-1]] = True

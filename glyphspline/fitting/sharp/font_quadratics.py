@@ -1,11 +1,13 @@
-"""Chains of quadratics as TrueType stores them, from an outline of such: as few points, most of them implied.
+"""Chains of quadratics as TrueType stores them: as few points as follow an outline, most of them implied.
 
 Between two corners or lines, a *run*, all points on the curve become implied: midway between control points. There is
 no kink there then, wherever the grid has these. Horizontal and vertical extrema cut a run into *sections*; the legs
 there stay horizontal or vertical, at the source's height. Each section gets the fewest control points that follow it;
-all points of the run are then moved together, rounded together, and certified as rounded. A section that fails is tried
-again with more points, then with its ends on the curve, and in the end stays as the source has it, as does a run that
-would have more points.
+all points of the run are then moved together. Those that are to lie on the tangents at its ends take places on the grid
+in that direction, the others are moved once more, rounded together, and certified as rounded.
+
+A section that fails is tried again with more points. Where the source is one of quadratics on the grid, it is tried
+with its ends on the curve too, and in the end stays as the source has it, as does a run that would have more points.
 """
 
 from __future__ import annotations
@@ -16,23 +18,36 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import directions, length
-from ...curves.nearest import near_place
-from ...curves.pairing import pair_span, room_for
+from ...outlines.segments import farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import NO_HANDLE, Joints, find_joints
-from .cubics import project, solve
-from .font_curves import set_upright
-from .lattice import turn_cost
+from .corners import NO_HANDLE, SMOOTH_KINK, Joints, find_joints
+from .cubics import solve
+from .font_curves import CORNER, set_upright, turn_between
+from .nearness import add_samples, certified, feet, reweight, squares
 from .settings import Settings
 
 NEAR = (0.7, 0.35, 0.35, 0.0)
-"""Of the tolerance: how near a section is to be before it is moved and rounded, on each try; 0 keeps it."""
+"""Of the tolerance: how near a section of a source of quadratics on the grid is to be before it is rounded, on each
+try; 0 keeps it."""
 
-EXPLICIT = 2
-"""Tries from which the ends of a section are on the curve, as the source has them."""
+OTHERS, MORE = (0.7, 0.7, 0.5, 0.5, 0.7, 0.5, 0.35), (0, 1, 0, 1, 0, 1, 2)
+"""The same for other sources, which have nothing to keep; and quadratics beyond the fewest."""
+
+EXPLICIT, LOOSE = 2, 4
+"""Tries from which the ends of a section are on the curve; and from which it may turn at the ends of its run, where the
+grid has no control point near enough."""
+
+MOST = 4
+"""Quadratics for a cubic, and twice as many for a section."""
 
 ROUNDS, SWEEPS = 5, 4
 """Gauss-Newton steps, and visits of all control points on the grid."""
+
+ATTEMPTS = 8
+"""Tries of a run."""
+
+DAMPING = 0.03
+"""Weight of control points' motion, as far as samples leave a choice: along the curve they would lose their order."""
 
 STEEP = np.radians(1.5)
 """Turn of a joint from which it stays where it is, with the turn it has."""
@@ -40,23 +55,68 @@ STEEP = np.radians(1.5)
 WORSE = np.radians(0.48)
 """Turn of a joint that a result may have where the source's is smaller."""
 
+FOLD = 1e3
+"""What it costs if the order of control points is lost, in mean squares of distance at the tolerance."""
+
+BLUNT = np.radians(20.0)
+"""Turn from which a corner's sides may turn; less would soon be a kink."""
+
+
+class Given(NamedTuple):
+    """A contour of m segments.
+
+    Attributes:
+        cubics: (m, 4, 2). line: (m,). joints: of it. slack: (m + 1,) the turn of each that is no new kink. level:
+            (m + 1,) whether a curve there is to begin or end along a line.
+        cuts: (m + 1,) the joints at which runs end: corners, kinks, ends of lines. upright: (m + 1,) those at which it
+            has a horizontal or vertical extremum.
+        stored: whether it is of quadratics on the grid. controls: (m, 2), implied: (m,) whether a joint is midway.
+    """
+
+    cubics: FloatArray
+    line: BoolArray
+    joints: Joints
+    slack: FloatArray
+    level: BoolArray
+    cuts: BoolArray
+    upright: BoolArray
+    stored: bool
+    controls: FloatArray
+    implied: BoolArray
+
 
 class Quads(NamedTuple):
     """The R quadratics of a run or section.
 
     Attributes:
         c: (R, 2) control points. node: (R + 1, 2) where they meet. implied: (R + 1,) midway between control points.
-        freedom: (R,) 0 where a control point stays, 1 where it moves along a line, 2 elsewhere. along: (R, 2) the line.
-        held: (R,) those of the source. lo: (R + 1,) samples at which they meet.
+        T: (R + 1, 2) unit tangents at nodes. tied: (R, 2) whether a control point is on that of its start, or end.
+        beyond: (R + 1, 2) where tied, unit tangents beyond the node. slack: (R + 1,) turn from these that is no kink.
+        fixed: (R,) control points that do not move. held: (R,) quadratics of the source.
+        owner: (R,) their sections. lo: (R + 1,) samples at which they meet.
     """
 
     c: FloatArray
     node: FloatArray
     implied: BoolArray
-    freedom: IntArray
-    along: FloatArray
+    T: FloatArray
+    beyond: FloatArray
+    slack: FloatArray
+    tied: BoolArray
+    fixed: BoolArray
     held: BoolArray
+    owner: IntArray
     lo: IntArray
+
+
+@compiled
+def part(q: Quads, a: int, b: int) -> Quads:
+    """Quadratics a to b - 1 of some."""
+    n = b + 1
+    return Quads(
+        q.c[a:b], q.node[a:n], q.implied[a:n], q.T[a:n], q.beyond[a:n], q.slack[a:n], q.tied[a:b], q.fixed[a:b],
+        q.held[a:b], q.owner[a:b], q.lo[a:n],
+    )  # fmt: skip
 
 
 @compiled
@@ -78,541 +138,580 @@ def as_cubic(q: Quads, s: int, out: FloatArray) -> None:
 
 
 @compiled
-def distances(q: Quads, s: int, Q: FloatArray, x: FloatArray, e: FloatArray, c: FloatArray, p: FloatArray) -> float:
-    """Pair the samples Q of quadratic s with points of it; the largest distance."""
-    as_cubic(q, s, p)
+def set_moves(q: Quads, s: int, J: FloatArray) -> None:
+    """How the control points before, of and behind quadratic s move the points of its cubic: J (4, 2, 6)."""
+    a, b = 0.5 if q.implied[s] else 0.0, 0.5 if q.implied[s + 1] else 0.0
+    J[:] = 0.0
     for axis in range(2):
-        c[0, axis] = 3 * (p[1, axis] - p[0, axis])
-        c[1, axis] = 3 * (p[2, axis] - 2 * p[1, axis] + p[0, axis])
-        c[2, axis] = 0.0
-    return project(Q, p[0, 0], p[0, 1], c, x, e)
+        one, two, three = axis, 2 + axis, 4 + axis
+        J[0, axis, one], J[0, axis, two] = a, a
+        J[1, axis, one], J[1, axis, two] = a / 3, (a + 2) / 3
+        J[2, axis, two], J[2, axis, three] = (b + 2) / 3, b / 3
+        J[3, axis, two], J[3, axis, three] = b, b
 
 
 @compiled
-def weights_of(q: Quads, s: int, t: float, B: FloatArray) -> None:
-    """(3,) how a point of quadratic s moves with the control point before it, its own, and the one behind it."""
-    z = 1 - t
-    B[0] = z * z / 2 if q.implied[s] else 0.0
-    B[2] = t * t / 2 if q.implied[s + 1] else 0.0
-    B[1] = 2 * z * t + B[0] + B[2]
-
-
-@compiled
-def across(
-    q: Quads, s: int, t: float, c: FloatArray, p: FloatArray, x: float, y: float, B: FloatArray, row: FloatArray
-) -> float:
-    """How far the point (x, y) is off quadratic s, across it at its place t; inf where the curve stands still.
+def relax(q: Quads, samples: FloatArray, enough: float) -> float:
+    """Move the control points nearest to the samples (N, 2), by least squares; the largest distance left.
 
     Args:
-        c, p: of quadratic s, see :func:`distances`. B: room. row: (6,) how the curve's own distance moves with the
-            coordinates of the three control points of :func:`weights_of`.
+        enough: the distance that ends this.
     """
-    dx, dy = 2 * c[1, 0] * t + c[0, 0], 2 * c[1, 1] * t + c[0, 1]
-    size = length(dx, dy)
-    if size <= 0.0:
-        return np.inf
-    nx, ny = -dy / size, dx / size
-    weights_of(q, s, t, B)
-    for i in range(3):
-        row[2 * i], row[2 * i + 1] = B[i] * nx, B[i] * ny
-    gap = nx * (x - (c[1, 0] * t + c[0, 0]) * t - p[0, 0])
-    return gap + ny * (y - (c[1, 1] * t + c[0, 1]) * t - p[0, 1])
-
-
-@compiled
-def relax(q: Quads, samples: FloatArray, tolerance: float) -> float:
-    """Move the control points nearest to the samples (N, 2), by least squares; the largest distance left."""
-    R = len(q.c)
+    R, N = len(q.c), len(samples)
     n = 2 * R
     A, g, first = np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64)
     for k in range(n):
         first[k] = max(0, 2 * (k // 2 - 2))
-    x, e, weight = np.empty(len(samples)), np.zeros(len(samples)), np.ones(len(samples))
-    c, p, B, row = np.empty((3, 2)), np.empty((4, 2)), np.empty(3), np.empty(6)
+    x, e, weight = np.empty(N), np.zeros(N), np.ones(N)
+    c, p, J, own = np.empty((3, 2)), np.empty((4, 2)), np.empty((4, 2, 6)), np.empty((6, 7))
     for s in range(R):
         for k in range(q.lo[s], q.lo[s + 1] + 1):
             x[k] = (k - q.lo[s]) / max(q.lo[s + 1] - q.lo[s], 1)
-    worst = np.inf
-    for m in range(ROUNDS + 1):
+    m = 0
+    while True:
         A[:], g[:], worst = 0.0, 0.0, 0.0
         for s in range(R):
-            a, b = q.lo[s], q.lo[s + 1]
-            own = distances(q, s, samples[a : b + 1], x[a : b + 1], e[a : b + 1], c, p)
-            worst = max(worst, own)
+            a, b = q.lo[s], q.lo[s + 1] + 1
+            as_cubic(q, s, p)
+            far = feet(p, samples[a:b], c, x[a:b], e[a:b])
+            worst = max(worst, far)
             if q.held[s] or m == ROUNDS:
                 continue
-            scale = 1 / max(b - a - 1, 1)
-            for k in range(a + 1, b):
-                gap = across(q, s, x[k], c, p, samples[k, 0], samples[k, 1], B, row)
-                if gap == np.inf:
-                    continue
-                if m > 0 and own > 0.0:
-                    weight[k] *= 0.3 + e[k] / own
-                w = scale * weight[k]
-                for i in range(3):
-                    u = s - 1 + i
-                    if u < 0 or u >= R:
-                        continue
-                    for ia in range(2):
-                        g[2 * u + ia] += w * row[2 * i + ia] * gap
-                        for j in range(i + 1):
-                            v = s - 1 + j
-                            if v < 0:
-                                continue
-                            for ja in range(2):
-                                if 2 * v + ja <= 2 * u + ia:
-                                    A[2 * u + ia, 2 * v + ja] += w * row[2 * i + ia] * row[2 * j + ja]
-        if m == ROUNDS or worst <= 0.1 * tolerance:
-            break
+            if m > 0 and far > 0.0:
+                reweight(weight[a:b], e[a:b], far)
+            set_moves(q, s, J)
+            own[:] = 0.0
+            add_samples(p, c, samples[a:b], x[a:b], weight[a:b], J, 1.0, own)
+            for u in range(6):
+                at = 2 * s - 2 + u
+                if 0 <= at < n:
+                    g[at] += own[u, 6]
+                    for v in range(max(0, 2 - 2 * s), u + 1):
+                        A[at, at - u + v] += own[u, v]
+        if m == ROUNDS or worst <= enough:
+            return worst
         for s in range(R):
-            # Motion across a line is dear; all motion costs a little.
-            tx, ty = q.along[s, 0], q.along[s, 1]
-            free = q.freedom[s]
+            # Motion across a tangent is dear; all motion costs a little.
             for axis in range(2):
-                A[2 * s + axis, 2 * s + axis] += 1e-3 if free > 0 else 1e6
-            if free == 1:
-                A[2 * s, 2 * s] += 1e6 * ty * ty
-                A[2 * s + 1, 2 * s] -= 1e6 * tx * ty
-                A[2 * s + 1, 2 * s + 1] += 1e6 * tx * tx
+                A[2 * s + axis, 2 * s + axis] += 1e6 if q.fixed[s] else DAMPING
+            for end in range(2):
+                if q.tied[s, end]:
+                    tx, ty = q.T[s + end]
+                    A[2 * s, 2 * s] += 1e6 * ty * ty
+                    A[2 * s + 1, 2 * s] -= 1e6 * tx * ty
+                    A[2 * s + 1, 2 * s + 1] += 1e6 * tx * tx
         solve(A, g, first, n)
-        most = 0.0
         for s in range(R):
-            if q.freedom[s] == 0 or q.held[s]:
+            if q.tied[s, 0] and q.tied[s, 1]:
                 continue
             dx, dy = g[2 * s], g[2 * s + 1]
-            if q.freedom[s] == 1:
-                along = dx * q.along[s, 0] + dy * q.along[s, 1]
-                dx, dy = along * q.along[s, 0], along * q.along[s, 1]
-            size = length(dx, dy)
             leg = 0.5 * length(q.node[s + 1, 0] - q.node[s, 0], q.node[s + 1, 1] - q.node[s, 1])
-            share = min(1.0, leg / max(size, 1e-12))
-            q.c[s, 0] += share * dx
-            q.c[s, 1] += share * dy
-            most = max(most, share * size)
+            share = min(1.0, leg / max(length(dx, dy), 1e-12))
+            push(q, s, share * dx, share * dy)
+        for s in range(R + 1):
+            if q.implied[s]:
+                lack = (1.0 - ahead(q.c, q.T, s)) / 2
+                if lack > 0.0:
+                    push(q, s - 1, -lack * q.T[s, 0], -lack * q.T[s, 1])
+                    push(q, s, lack * q.T[s, 0], lack * q.T[s, 1])
+                continue
+            for u, sign in ((s - 1, -1.0), (s, 1.0)):
+                if 0 <= u < R:
+                    dx, dy = q.c[u, 0] - q.node[s, 0], q.c[u, 1] - q.node[s, 1]
+                    lack = 1.0 - sign * (dx * q.T[s, 0] + dy * q.T[s, 1])
+                    if lack > 0.0:
+                        push(q, u, sign * lack * q.T[s, 0], sign * lack * q.T[s, 1])
         set_nodes(q)
-        if most < 0.02 * tolerance and m < ROUNDS - 1:
-            continue
-    return worst
+        for s in range(1, R):
+            if not (q.held[s - 1] or q.held[s]):
+                share_samples(q, s, samples, x)
+        m += 1
 
 
 @compiled
-def meeting(p: FloatArray, px: float, py: float, r: FloatArray, rx: float, ry: float, out: FloatArray) -> None:
-    """Where the line from p along (px, py) meets that from r along (rx, ry); midway if nowhere near."""
+def push(q: Quads, s: int, dx: float, dy: float) -> None:
+    """Move a control point by as much of a vector as it may."""
+    if q.fixed[s]:
+        return
+    for end in range(2):
+        if q.tied[s, end]:
+            tx, ty = q.T[s + end]
+            along = dx * tx + dy * ty
+            dx, dy = along * tx, along * ty
+    q.c[s, 0] += dx
+    q.c[s, 1] += dy
+
+
+@compiled
+def ahead(c: FloatArray, T: FloatArray, s: int) -> float:
+    """How far control point s is ahead of the one before it, along the tangent between them."""
+    return (c[s, 0] - c[s - 1, 0]) * T[s, 0] + (c[s, 1] - c[s - 1, 1]) * T[s, 1]
+
+
+@compiled
+def share_samples(q: Quads, s: int, samples: FloatArray, x: FloatArray) -> None:
+    """Let the quadratics before and behind node s meet at the sample nearest to it, and their feet be even again."""
+    before, a, b = q.lo[s], q.lo[s - 1], q.lo[s + 1]
+    for step in (-1, 1):
+        while a + 2 <= q.lo[s] + step <= b - 2:
+            k, o = q.lo[s], q.lo[s] + step
+            near = length(samples[k, 0] - q.node[s, 0], samples[k, 1] - q.node[s, 1])
+            if length(samples[o, 0] - q.node[s, 0], samples[o, 1] - q.node[s, 1]) >= near:
+                break
+            q.lo[s] = o
+    if q.lo[s] != before:
+        k = q.lo[s]
+        if not q.tied[s, 0]:
+            set_tangent(samples, k, q.T[s])
+        for k in range(a + 1, b):
+            first, last = (a, q.lo[s]) if k < q.lo[s] else (q.lo[s], b)
+            x[k] = (k - first) / (last - first)
+
+
+@compiled
+def set_tangent(samples: FloatArray, k: int, out: FloatArray) -> None:
+    """The unit tangent at a sample."""
+    x, y = samples[k + 1, 0] - samples[k - 1, 0], samples[k + 1, 1] - samples[k - 1, 1]
+    size = max(length(x, y), 1e-12)
+    out[0], out[1] = x / size, y / size
+
+
+@compiled
+def meeting(p: FloatArray, a: FloatArray, r: FloatArray, b: FloatArray, out: FloatArray) -> None:
+    """Where the line from p along a meets that from r along b; midway if nowhere near."""
     x, y = r[0] - p[0], r[1] - p[1]
-    cross, size = px * ry - py * rx, length(x, y)
+    cross, size = a[0] * b[1] - a[1] * b[0], length(x, y)
     out[0], out[1] = (p[0] + r[0]) / 2, (p[1] + r[1]) / 2
     if abs(cross) > 0.02:
-        s, t = (x * ry - y * rx) / cross, (x * py - y * px) / cross
+        s, t = (x * b[1] - y * b[0]) / cross, (x * a[1] - y * a[0]) / cross
         if 0.0 < s < 2.0 * size and -2.0 * size < t < 0.0:
-            out[0], out[1] = p[0] + s * px, p[1] + s * py
+            out[0], out[1] = p[0] + s * a[0], p[1] + s * a[1]
 
 
 @compiled
-def try_section(
-    samples: FloatArray, a: int, b: int, T: FloatArray, corner: BoolArray, count: int, tolerance: float, c: FloatArray,
-    lo: IntArray,
-) -> float:  # fmt: skip
-    """Follow samples a to b by ``count`` quadratics, implied where they meet; the largest distance of a sample.
+def set_ends(q: Quads, given: Given, a: int, b: int) -> None:
+    """Give quadratics from joint a to joint b the tangents there, and beyond."""
+    arriving, leaving, R = given.joints.arriving[0], given.joints.leaving[0], len(q.c)
+    q.slack[:], q.slack[0], q.slack[R] = WORSE, given.slack[a], given.slack[b]
+    q.T[0], q.beyond[0], q.T[R], q.beyond[R] = leaving[a], arriving[a], arriving[b], leaving[b]
+
+
+@compiled
+def begin(q: Quads, given: Given, a: int, b: int, level: bool) -> bool:
+    """Begin with quadratics from joint a to joint b, as many as q has; False if samples are too few.
 
     Args:
-        T: (2, 2) unit tangents at the ends. corner: (2,) whether these may turn.
-        c: (count, 2) receives the control points. lo: (count + 1,) the samples at which they meet.
+        level: whether they begin and end along lines where they may.
     """
-    n = b - a
-    turning = np.zeros(n + 1)
-    for k in range(1, n):
-        ax, ay = samples[a + k, 0] - samples[a + k - 1, 0], samples[a + k, 1] - samples[a + k - 1, 1]
-        bx, by = samples[a + k + 1, 0] - samples[a + k, 0], samples[a + k + 1, 1] - samples[a + k, 1]
-        turning[k] = turning[k - 1] + abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by)) + 1e-4
-    turning[n] = turning[n - 1] + 1e-4
-    lo[0], lo[count] = a, b
+    joints, samples, count = given.joints, given.joints.samples[0], len(q.c)
+    first, last = joints.first[a], joints.first[b]
+    n = last - first
+    # Quadratics are short where the outline turns, and none is much longer than its neighbours.
+    x_before = y_before = 0.0
+    sizes, bends, at = np.empty(n), np.zeros(n + 1), np.zeros(n + 1)
+    for k in range(n):
+        x, y = samples[first + k + 1, 0] - samples[first + k, 0], samples[first + k + 1, 1] - samples[first + k, 1]
+        sizes[k] = length(x, y)
+        if k > 0:
+            bends[k] = turn_between(x_before, y_before, x, y)
+        x_before, y_before = x, y
+    total, turn = max(sizes.sum(), 1e-12), max(bends.sum(), 1e-6)
+    for k in range(n):
+        share = sizes[k] / total
+        at[k + 1] = at[k] + np.sqrt((bends[k] + bends[k + 1]) / 2 / turn * share) + 0.1 * share
+    q.lo[0], q.lo[count] = first, last
     for s in range(1, count):
-        k = np.searchsorted(turning, turning[n] * s / count)
-        lo[s] = a + min(max(k, lo[s - 1] - a + 2), n - 2 * (count - s))
-        if lo[s] <= lo[s - 1] + 1:
-            return np.inf
-    q = Quads(
-        c[:count], np.empty((count + 1, 2)), np.ones(count + 1, dtype=np.bool_), np.full(count, 2),
-        np.zeros((count, 2)), np.zeros(count, dtype=np.bool_), lo[: count + 1],
-    )  # fmt: skip
-    tangents = np.empty((count + 1, 2))
-    tangents[0], tangents[count] = T[0], T[1]
-    for s in range(count + 1):
-        q.node[s] = samples[lo[s]]
-        if 0 < s < count:
-            x, y = samples[lo[s] + 1, 0] - samples[lo[s] - 1, 0], samples[lo[s] + 1, 1] - samples[lo[s] - 1, 1]
-            size = max(length(x, y), 1e-12)
-            tangents[s, 0], tangents[s, 1] = x / size, y / size
-    for s in range(count):
-        meeting(
-            q.node[s], tangents[s, 0], tangents[s, 1], q.node[s + 1], tangents[s + 1, 0], tangents[s + 1, 1], q.c[s]
-        )
+        k = np.searchsorted(at, at[n] * s / count)
+        q.lo[s] = first + min(max(k, q.lo[s - 1] - first + 2), n - 2 * (count - s))
+        if q.lo[s] <= q.lo[s - 1] + 1:
+            return False
+    set_ends(q, given, a, b)
+    if level and given.level[a]:
+        q.T[0] = q.beyond[0]
+    if level and given.level[b]:
+        q.T[count] = q.beyond[count]
+    q.tied[:], q.fixed[:], q.held[:], q.implied[:] = False, False, False, True
     q.implied[0] = q.implied[count] = False
+    q.tied[0, 0], q.tied[count - 1, 1] = not joints.corner[a], not joints.corner[b]
+    for s in range(count + 1):
+        k = q.lo[s]
+        q.node[s] = samples[k]
+        if 0 < s < count:
+            set_tangent(samples, k, q.T[s])
+    q.node[0], q.node[count] = np.rint(q.node[0]), np.rint(q.node[count])
+    least = 0.05 * length(q.node[count, 0] - q.node[0, 0], q.node[count, 1] - q.node[0, 1]) / count
+    for s in range(count):
+        meeting(q.node[s], q.T[s], q.node[s + 1], q.T[s + 1], q.c[s])
     for s, end in ((0, 0), (count - 1, 1)):
-        if not corner[end]:
-            q.freedom[s] -= 1
-            q.along[s] = T[end]
-            out = q.c[s]
+        if q.tied[s, end] and not q.tied[s, 1 - end]:
             # On its tangent, ahead of the end.
-            x, y = out[0] - q.node[count * end, 0], out[1] - q.node[count * end, 1]
-            along = x * T[end, 0] + y * T[end, 1]
-            least = 0.05 * length(samples[b, 0] - samples[a, 0], samples[b, 1] - samples[a, 1]) / count
+            p, (tx, ty) = q.node[s + end], q.T[s + end]
+            along = (q.c[s, 0] - p[0]) * tx + (q.c[s, 1] - p[1]) * ty
             along = min(along, -least) if end else max(along, least)
-            if count > 1 or corner[1 - end]:
-                out[0], out[1] = q.node[count * end, 0] + along * T[end, 0], q.node[count * end, 1] + along * T[end, 1]
+            q.c[s, 0], q.c[s, 1] = p[0] + along * tx, p[1] + along * ty
     set_nodes(q)
-    return relax(q, samples, tolerance)
+    return True
 
 
 @compiled
-def round_quads(q: Quads, samples: FloatArray, tolerance: float, T: FloatArray, corner: BoolArray) -> None:
-    """Round control points to the grid, each to the neighbour that leaves the outline least; lines stay lines."""
-    R = len(q.c)
-    forms, pulls, exact = np.zeros((R, 6, 6)), np.zeros((R, 6)), q.c.copy()
-    x, e, c, p, B, row = (
-        np.empty(len(samples)),
-        np.empty(len(samples)),
-        np.empty((3, 2)),
-        np.empty((4, 2)),
-        np.empty(3),
-        np.empty(6),
-    )
-    for s in range(R):
-        if q.held[s]:
-            continue
-        a, b = q.lo[s], q.lo[s + 1]
-        for k in range(a, b + 1):
-            x[k] = (k - a) / max(b - a, 1)
-        distances(q, s, samples[a : b + 1], x[a : b + 1], e[a : b + 1], c, p)
-        w = 1 / (max(b - a - 1, 1) * tolerance * tolerance)
-        for k in range(a + 1, b):
-            gap = across(q, s, x[k], c, p, samples[k, 0], samples[k, 1], B, row)
-            if gap == np.inf:
+def fewest(
+    q: Quads, R: int, given: Given, a: int, b: int, near: float, most: int, level: bool
+) -> tuple[int, bool]:  # fmt: skip
+    """The number of quadratics, at most ``most``, that follow joints a to b; and whether they are so near."""
+    for count in range(1, most + 1):
+        own = part(q, R, R + count)
+        if not begin(own, given, a, b, level):
+            return count - 1, False
+        if relax(own, given.joints.samples[0], near / 2) <= near:
+            return count, True
+    return most, False
+
+
+@compiled
+def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float) -> Quads:
+    """The quadratics of the sections between the joints ``ends`` of a run, each as its tries say."""
+    S, samples = len(tries), given.joints.samples[0]
+    room, R = MOST * (ends[S] - ends[0] + 2 * S), 0
+    q = Quads(
+        np.empty((room, 2)), np.empty((room + 1, 2)), np.ones(room + 1, np.bool_), np.zeros((room + 1, 2)),
+        np.zeros((room + 1, 2)), np.full(room + 1, WORSE), np.zeros((room, 2), np.bool_), np.zeros(room, np.bool_),
+        np.zeros(room, np.bool_), np.empty(room, np.int64), np.empty(room + 1, np.int64),
+    )  # fmt: skip
+    for f in range(S):
+        a, b = ends[f], ends[f + 1]
+        near, found = (NEAR[tries[f]] if given.stored else OTHERS[tries[f]]) * tolerance, False
+        most, count, level = b - a - 1 if given.stored else MOST * (b - a + 1), 0, False
+        if near > 0.0:
+            count, found = fewest(q, R, given, a, b, near, most, False)
+            if tries[f] < EXPLICIT and (given.level[a] or given.level[b]):
+                own_count, level = fewest(q, R, given, a, b, near, min(count + 1, most), True)
+                count, found = (own_count, True) if level else (count, found)
+        if given.stored and not found:
+            keep = near == 0.0 or tries[f] > 0
+            count = b - a
+            own = part(q, R, R + count)
+            own.tied[:], own.fixed[:], own.held[:] = False, keep, keep
+            own.c[:], own.lo[:], own.implied[:] = given.controls[a:b], given.joints.first[a : b + 1], True
+            set_ends(own, given, a, b)
+            if not keep:
+                own.tied[0, 0], own.tied[count - 1, 1] = not given.joints.corner[a], not given.joints.corner[b]
+            for k in range(count):
+                if k == 0 or (keep and not given.implied[a + k]):
+                    own.implied[k], own.node[k] = False, given.cubics[a + k, 0]
+            own.implied[count], own.node[count] = False, given.cubics[b - 1, 3]
+        elif not given.stored:
+            count += MORE[tries[f]] if found else 0
+            while not begin(part(q, R, R + count), given, a, b, level):
+                count -= 1
+            relax(part(q, R, R + count), samples, near / 2)
+        else:
+            begin(part(q, R, R + count), given, a, b, level)
+            relax(part(q, R, R + count), samples, near / 2)
+        stay = f > 0 and max(tries[f], tries[f - 1]) >= EXPLICIT
+        q.implied[R] = f > 0 and (not stay or given.implied[a])
+        q.owner[R : R + count] = f
+        R += count
+    q = part(q, 0, R)
+    set_nodes(q)
+    return q
+
+
+@compiled
+def aim(q: Quads, tries: IntArray) -> bool:
+    """Put control points on tangents that are not the axes' on the grid, as nearly in that direction; whether any."""
+    aimed = False
+    for s in range(len(q.c)):
+        both = q.tied[s, 0] and q.tied[s, 1]
+        for end in range(2):
+            if q.fixed[s] or not q.tied[s, end]:
                 continue
-            for i in range(6):
-                pulls[s, i] -= w * gap * row[i]
-                for j in range(6):
-                    forms[s, i, j] += w * row[i] * row[j]
+            sign, (tx, ty), p = 1.0 - 2.0 * end, q.T[s + end], q.node[s + end]
+            if (tx == 0.0 or ty == 0.0) and not both:
+                continue
+            tx, ty = sign * tx, sign * ty
+            steep = abs(ty) > abs(tx)
+            wanted = max((q.c[s, 0] - p[0]) * tx + (q.c[s, 1] - p[1]) * ty, 1.0)
+            main, other = (ty, tx) if steep else (tx, ty)
+            least, best_x, best_y = np.inf, q.c[s, 0], q.c[s, 1]
+            for code in range(25 if both else int(2 * wanted) + 12):
+                if both:
+                    x, y = np.rint(q.c[s, 0]) - p[0] + code % 5 - 2, np.rint(q.c[s, 1]) - p[1] + code // 5 - 2
+                else:
+                    v, w = np.sign(main) * (code + 1), np.rint((code + 1) * other / abs(main))
+                    x, y = (w, v) if steep else (v, w)
+                along = (x * tx + y * ty - wanted) / (0.3 * wanted + 1.0)
+                price = 0.5 if tries[q.owner[s]] >= LOOSE else 100.0
+                cost = along * along + off_tangent(q, s + end, sign * x, sign * y, price)
+                if both:
+                    r = q.node[s + 1]
+                    cost += off_tangent(q, s + 1, r[0] - p[0] - x, r[1] - p[1] - y, price)
+                if cost < least:
+                    least, best_x, best_y = cost, p[0] + x, p[1] + y
+            q.c[s, 0], q.c[s, 1], q.fixed[s], aimed = best_x, best_y, True, True
+    set_nodes(q)
+    return aimed
+
+
+@compiled
+def is_kink(q: Quads, s: int, x: float, y: float) -> bool:
+    """Whether a leg (x, y) makes node s a kink that the source has not there."""
+    turn = turn_between(x, y, q.beyond[s, 0], q.beyond[s, 1])
+    return turn > q.slack[s] + 1e-9 or turn < CORNER < q.slack[s]
+
+
+@compiled
+def off_tangent(q: Quads, s: int, x: float, y: float, price: float) -> float:
+    """What a leg (x, y) beside the tangent at node s costs; where it turns from what is beyond, the price."""
+    off, turn = turn_between(x, y, q.T[s, 0], q.T[s, 1]), turn_between(x, y, q.beyond[s, 0], q.beyond[s, 1])
+    return price * (0.005 * (off / WORSE) ** 2 + (max(turn, off) / WORSE if is_kink(q, s, x, y) else 0.0))
+
+
+@compiled
+def round_quads(q: Quads, samples: FloatArray, tolerance: float) -> None:
+    """Round control points to the grid, each to the neighbour that leaves the outline least; tangents that are axes
+    stay so."""
+    R = len(q.c)
+    # A row before the first control point, and one behind the last.
+    points, own, rest = np.zeros((R + 2, 2)), np.zeros((R, 6, 7)), np.zeros(R)
+    points[1 : R + 1] = q.c
+    exact, c, p, J = points.copy(), np.empty((3, 2)), np.empty((4, 2)), np.empty((4, 2, 6))
     for s in range(R):
-        if q.freedom[s] > 0 and not q.held[s]:
-            q.c[s] = np.rint(q.c[s])
+        if not q.held[s]:
+            a, n = q.lo[s], q.lo[s + 1] + 1 - q.lo[s]
+            Q, x = samples[a : a + n], np.arange(n) / max(n - 1, 1)
+            as_cubic(q, s, p)
+            feet(p, Q, c, x, np.empty(n))
+            set_moves(q, s, J)
+            rest[s] = add_samples(p, c, Q, x, np.ones(n), J, tolerance, own[s])
+        if not q.fixed[s]:
+            points[s + 1] = np.rint(points[s + 1])
     for _ in range(SWEEPS):
         changed = False
         for s in range(R):
-            if q.freedom[s] == 0 or q.held[s]:
+            if q.fixed[s]:
                 continue
-            tx, ty = q.along[s, 0], q.along[s, 1]
-            upright = q.freedom[s] == 1 and (tx == 0.0 or ty == 0.0)
-            x0, y0 = q.c[s, 0], q.c[s, 1]
-            best_x, best_y, least = x0, y0, cost_of(q, s, exact, forms, pulls, T, corner)
-            for code in range(25 if q.freedom[s] == 1 and not upright else 9):
-                if code < 9:
-                    u, v = code % 3 - 1.0, code // 3 - 1.0
-                else:
-                    u, v = code % 5 - 2.0, code // 5 - 2.0
-                if upright and ((tx == 0.0 and u != 0.0) or (ty == 0.0 and v != 0.0)):
+            still_x = (q.tied[s, 0] and q.T[s, 0] == 0.0) or (q.tied[s, 1] and q.T[s + 1, 0] == 0.0)
+            still_y = (q.tied[s, 0] and q.T[s, 1] == 0.0) or (q.tied[s, 1] and q.T[s + 1, 1] == 0.0)
+            x0, y0 = points[s + 1]
+            best_x, best_y, least = x0, y0, np.inf
+            for code in range(9):
+                u, v = (0.0, 1.0, -1.0)[code % 3], (0.0, 1.0, -1.0)[code // 3]
+                if (still_x and u != 0.0) or (still_y and v != 0.0):
                     continue
-                q.c[s, 0], q.c[s, 1] = x0 + u, y0 + v
-                cost = cost_of(q, s, exact, forms, pulls, T, corner)
+                points[s + 1, 0], points[s + 1, 1] = x0 + u, y0 + v
+                cost = 0.0
+                for t in (s, s + 1):
+                    if 0 < t < R and q.implied[t] and ahead(points[1:], q.T, t) < 0.5:
+                        cost += FOLD
+                for t in range(max(s - 1, 0), min(s + 2, R)):
+                    if cost < least and not q.held[t]:
+                        cost += squares(points[t : t + 3], exact[t : t + 3], own[t], rest[t])
                 if cost < least - 1e-9:
-                    best_x, best_y, least, changed = x0 + u, y0 + v, cost, True
-            q.c[s, 0], q.c[s, 1] = best_x, best_y
+                    best_x, best_y, least, changed = x0 + u, y0 + v, cost, changed or code > 0
+            points[s + 1, 0], points[s + 1, 1] = best_x, best_y
         if not changed:
             break
+    q.c[:] = points[1 : R + 1]
     set_nodes(q)
 
 
 @compiled
-def cost_of(
-    q: Quads, s: int, exact: FloatArray, forms: FloatArray, pulls: FloatArray, T: FloatArray, corner: BoolArray
-) -> float:
-    """What changes with control point s: squared distances of three quadratics, and turns at nodes that are stored."""
-    R, total = len(q.c), 0.0
-    for t in range(max(s - 1, 0), min(s + 2, R)):
-        if q.held[t]:
+def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tuple[BoolArray, float, int]:
+    """(R,) which quadratics are too far from the source, or turn where they may not; their certified distance; and the
+    number of new kinks."""
+    R, joints, m = len(q.c), given.joints, len(given.cubics)
+    P, stays = np.empty((R, 4, 2)), np.zeros(R + 1, dtype=np.bool_)
+    for s in range(R):
+        as_cubic(q, s, P[s])
+    hints = joints.places[q.lo].copy()
+    hints[0], hints[R], stays[0] = i, j, True
+    far = certified(1, P, hints, stays, np.zeros(R, np.bool_), False, given.cubics, np.empty(0), tolerance)
+    bad = ~(far <= 0.999 * tolerance)
+    for s in range(R):
+        for axis in range(2):
+            bad[s] = bad[s] or abs(q.c[s, axis] - np.rint(q.c[s, axis])) > 1e-6
+        if s > 0 and not q.implied[s] and not (q.held[s] and q.held[s - 1]):
+            ax, ay = q.node[s, 0] - q.c[s - 1, 0], q.node[s, 1] - q.c[s - 1, 1]
+            if turn_between(ax, ay, q.c[s, 0] - q.node[s, 0], q.c[s, 1] - q.node[s, 1]) > WORSE:
+                bad[s] = bad[s - 1] = True
+    kinks = 0
+    for end in range(2):
+        k, s = j if end else i, (R - 1) * end
+        if q.held[s]:
             continue
-        for i in range(6):
-            u = t - 1 + i // 2
-            if u < 0 or u >= R:
-                continue
-            move = q.c[u, i % 2] - exact[u, i % 2]
-            if move == 0.0:
-                continue
-            part = 2 * pulls[t, i]
-            for j in range(6):
-                v = t - 1 + j // 2
-                if 0 <= v < R:
-                    part += forms[t, i, j] * (q.c[v, j % 2] - exact[v, j % 2])
-            total += move * part
-    for k in (s, s + 1):
-        if q.implied[k] or (k == 0 and corner[0]) or (k == R and corner[1]):
-            continue
-        ax, ay = q.node[k, 0] - q.c[k - 1, 0] if k > 0 else 0.0, q.node[k, 1] - q.c[k - 1, 1] if k > 0 else 0.0
-        bx, by = q.c[k, 0] - q.node[k, 0] if k < R else 0.0, q.c[k, 1] - q.node[k, 1] if k < R else 0.0
-        if k == 0:
-            ax, ay = T[0, 0], T[0, 1]
-        if k == R:
-            bx, by = T[1, 0], T[1, 1]
-        if (ax == 0.0 and ay == 0.0) or (bx == 0.0 and by == 0.0):
-            total += 1e6
-        else:
-            total += turn_cost(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-    return total
+        sign, here = 1 - 2 * end, joints.arriving[0, k] if end else joints.leaving[0, k]
+        x, y = sign * (q.c[s, 0] - q.node[s + end, 0]), sign * (q.c[s, 1] - q.node[s + end, 1])
+        own = turn_between(x, y, here[0], here[1])
+        if joints.corner[k]:  # what is beyond may turn as much, unless it is a line
+            a, b = joints.arriving[0, k], joints.leaving[0, k]
+            share = 1.0 if given.line[k % m] or given.line[k - 1] else 2.0
+            bad[s] = bad[s] or share * own > turn_between(a[0], a[1], b[0], b[1]) - CORNER
+        elif is_kink(q, s + end, x, y):
+            bad[s], kinks = True, kinks + 1
+    return bad, far.max(), kinks
+
+
+@compiled
+def next_tries(q: Quads, bad: BoolArray, stored: bool, tries: IntArray) -> bool:
+    """Give sections with bad quadratics another try; whether there is one."""
+    S, before = len(tries), tries.copy()
+    failed, moved = np.zeros(S, dtype=np.bool_), np.zeros(S, dtype=np.bool_)
+    for s in range(len(q.c)):
+        if bad[s] and q.held[s]:
+            moved[q.owner[s]] = True
+        elif bad[s]:
+            failed[q.owner[s]] = True
+    for f in range(S):
+        if failed[f]:
+            tries[f] = min(tries[f] + 1, (len(NEAR) if stored else len(OTHERS)) - 1)
+        if moved[f] and tries[f] < EXPLICIT:
+            tries[f] = EXPLICIT
+        elif moved[f]:
+            # What is implied in the source moves with the control point beyond: both stay.
+            for k in range(max(f - 1, 0), min(f + 2, S)):
+                tries[k] = len(NEAR) - 1
+    return (tries != before).any()
 
 
 @compiled
 def fit_run(
-    cubics: FloatArray, line: BoolArray, joints: Joints, upright: BoolArray, i: int, j: int, tolerance: float,
-    points: FloatArray, on: BoolArray, reached: FloatArray,
-) -> int:  # fmt: skip
+    given: Given, i: int, j: int, tolerance: float, points: FloatArray, on: BoolArray
+) -> tuple[int, float]:  # fmt: skip
     """Points of the quadratics from joint i to joint j, without the last.
 
     Args:
-        cubics: (m, 4, 2) the source. line: (m,) which of them are lines.
         points: (…, 2) receives them; on: whether they are on the curve.
-        reached: (2,) the first receives the certified distance if it is larger.
 
     Returns:
-        Their number, at most that of the source.
+        Their number, at most that of a stored source; and their certified distance.
     """
-    n, samples = j - i, joints.samples[0]
-    controls, implied = np.empty((n, 2)), np.zeros(n + 1, dtype=np.bool_)
-    for k in range(n):
-        for axis in range(2):
-            controls[k, axis] = np.rint((3 * cubics[i + k, 1, axis] - cubics[i + k, 0, axis]) / 2)
-    own = 1
-    for k in range(1, n):
-        implied[k] = True
-        for axis in range(2):
-            middle = (controls[k - 1, axis] + controls[k, axis]) / 2
-            implied[k] = implied[k] and abs(middle - cubics[i + k, 0, axis]) < 1e-6
-        own += 0 if implied[k] else 1
-    own += n
+    n, S, own = j - i, 1, j - i + 1
     ends = np.empty(n + 1, dtype=np.int64)
-    ends[0], S = 0, 0
-    for k in range(1, n + 1):
-        if k == n or upright[i + k]:
-            S += 1
+    ends[0] = i
+    for k in range(i + 1, j):
+        own += 0 if given.implied[k] else 1
+        if given.upright[k]:
             ends[S] = k
-    tries, corner, T = np.zeros(S, dtype=np.int64), np.empty(2, dtype=np.bool_), np.empty((2, 2))
-    outer, outer_T = np.empty(2, dtype=np.bool_), np.empty((2, 2))
-    outer[0], outer[1] = joints.corner[i], joints.corner[j]
-    outer_T[0], outer_T[1] = joints.leaving[0, i], joints.arriving[0, j]
-    c, lo, room = np.empty((n + 2, 2)), np.empty(n + 3, dtype=np.int64), n + S + 2
-    for _ in range(8 if n > 1 else 0):
-        q = Quads(
-            np.empty((room, 2)), np.empty((room + 1, 2)), np.ones(room + 1, dtype=np.bool_), np.full(room, 2),
-            np.zeros((room, 2)), np.zeros(room, dtype=np.bool_), np.zeros(room + 1, dtype=np.int64),
-        )  # fmt: skip
-        owner, R = np.empty(room, dtype=np.int64), 0
-        for f in range(S):
-            a, b = ends[f], ends[f + 1]
-            first, last = joints.first[i + a], joints.first[i + b]
-            corner[0], corner[1] = outer[0] and f == 0, outer[1] and f == S - 1
-            T[0], T[1] = joints.leaving[0, i + a], joints.arriving[0, i + b]
-            near, count = NEAR[tries[f]] * tolerance, 1
-            while near > 0.0 and count < b - a:
-                if try_section(samples, first, last, T, corner, count, near, c, lo) <= near:
-                    break
-                count += 1
-            start = R
-            if near > 0.0 and (count < b - a or tries[f] < 1):
-                if count == b - a:
-                    for k in range(count):
-                        c[k], lo[k] = controls[a + k], joints.first[i + a + k]
-                    lo[count] = last
-                for s in range(count):
-                    q.c[R], q.lo[R], owner[R] = c[s], lo[s], f
-                    if s > 0:
-                        q.implied[R] = True
-                    R += 1
-                for s, end in ((start, 0), (R - 1, 1)):
-                    if not corner[end]:
-                        q.freedom[s] -= 1
-                        q.along[s] = T[end]
-                if start + 1 == R and q.freedom[start] == 0:
-                    meeting(samples[first], T[0, 0], T[0, 1], samples[last], T[1, 0], T[1, 1], q.c[start])
-            else:
-                for k in range(a, b):
-                    q.c[R], q.lo[R], owner[R], q.held[R], q.freedom[R] = controls[k], joints.first[i + k], f, True, 0
-                    q.implied[R] = implied[k]
-                    if not implied[k]:
-                        q.node[R] = cubics[i + k, 0]
-                    R += 1
-            q.node[start] = samples[first]
-            stay = f > 0 and (tries[f] >= EXPLICIT or tries[f - 1] >= EXPLICIT)
-            q.implied[start] = f > 0 and (not stay or implied[a])
-            q.lo[R], q.node[R], q.implied[R] = last, samples[last], False
-        q = Quads(q.c[:R], q.node[: R + 1], q.implied[: R + 1], q.freedom[:R], q.along[:R], q.held[:R], q.lo[: R + 1])
-        set_nodes(q)
-        relax(q, samples, tolerance)
-        round_quads(q, samples, tolerance, outer_T, outer)
-        stored = R + 1
-        for s in range(1, R):
-            stored += 0 if q.implied[s] else 1
-        bad = far_quads(q, cubics, joints, i, j, tolerance, reached)
-        turned(q, cubics, line, joints, i, j, bad)
-        for s in range(R):
-            for axis in range(2):
-                # Where two tangents meet is seldom on the grid.
-                bad[s] = bad[s] or abs(q.c[s, axis] - np.rint(q.c[s, axis])) > 1e-6
-                q.c[s, axis] = np.rint(q.c[s, axis])
-        for s in range(1, R):
-            if not q.implied[s]:
-                ax, ay = q.node[s, 0] - q.c[s - 1, 0], q.node[s, 1] - q.c[s - 1, 1]
-                bx, by = q.c[s, 0] - q.node[s, 0], q.c[s, 1] - q.node[s, 1]
-                if abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by)) > WORSE and not (q.held[s] and q.held[s - 1]):
-                    bad[s] = bad[s - 1] = True
-        wrong = False
-        for f in range(S):
-            failed = False
-            for s in range(R):
-                failed = failed or (owner[s] == f and bad[s] and not q.held[s])
-            if failed:
-                tries[f], wrong = min(tries[f] + 1, len(NEAR) - 1), True
-            moved = False
-            for s in range(R):
-                moved = moved or (owner[s] == f and bad[s] and q.held[s])
-            if moved and tries[f] < EXPLICIT:
-                tries[f], wrong = EXPLICIT, True
-            elif moved:
-                # What is implied in the source moves with the control point beyond: both stay.
-                wrong = True
-                for k in range(max(f - 1, 0), min(f + 2, S)):
-                    tries[k] = len(NEAR) - 1
-        if not wrong:
-            if stored >= own:
-                break
-            reached[0] = max(reached[0], reached[1])
-            at = 0
-            for s in range(R):
-                if s == 0 or not q.implied[s]:
-                    points[at], on[at] = q.node[s], True
-                    at += 1
-                points[at], on[at] = q.c[s], False
-                at += 1
-            return at
+            S += 1
+    ends[S] = j
+    tries = np.zeros(S, dtype=np.int64)
+    samples, count, least, reached = given.joints.samples[0], 0, np.inf, np.inf
+    for _ in range(ATTEMPTS if n > 1 or not given.stored else 0):
+        q = assembled(given, ends[: S + 1], tries, tolerance)
+        relax(q, samples, 0.1 * tolerance)
+        if aim(q, tries):
+            relax(q, samples, 0.1 * tolerance)
+        round_quads(q, samples, tolerance)
+        bad, far, kinks = wrong_quads(q, given, i, j, tolerance)
+        again = bad.any() and next_tries(q, bad, given.stored, tries)
+        rank = kinks + (far / tolerance if far <= tolerance else 1e3 * far)
+        if (not given.stored and rank < least) or not bad.any():
+            least, reached = rank, far
+            count = put_points(q.c, q.node, q.implied, points, on)
+        if not again:
+            break
+    if count > 0 and (count < own or not given.stored):
+        return count, reached
+    nodes = given.cubics[i:j, 0]
+    return put_points(given.controls[i:j], nodes, given.implied[i:j], points, on), 0.0
+
+
+@compiled
+def put_points(c: FloatArray, node: FloatArray, implied: BoolArray, points: FloatArray, on: BoolArray) -> int:
+    """Write what is stored of quadratics, the first node too; the number of points."""
     at = 0
-    for k in range(n):
-        if k == 0 or not implied[k]:
-            points[at], on[at] = cubics[i + k, 0], True
+    for s in range(len(c)):
+        if s == 0 or not implied[s]:
+            points[at], on[at] = node[s], True
             at += 1
-        points[at], on[at] = controls[k], False
+        points[at], on[at] = c[s], False
         at += 1
     return at
 
 
 @compiled
-def turned(q: Quads, cubics: FloatArray, line: BoolArray, joints: Joints, i: int, j: int, bad: BoolArray) -> None:
-    """Mark the first and last quadratic of a run if the end turns more than it may, or is a corner no more."""
-    R, m = len(q.c), len(cubics)
-    for end in range(2):
-        k, s = (j if end else i) % m, (R - 1) * end
-        before, behind = cubics[k - 1], cubics[k]
-        ax, ay = before[3, 0] - before[2, 0], before[3, 1] - before[2, 1]
-        bx, by = behind[1, 0] - behind[0, 0], behind[1, 1] - behind[0, 1]
-        old = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-        tx, ty = (ax, ay) if end else (bx, by)
-        if end:
-            ax, ay = x, y = q.node[R, 0] - q.c[s, 0], q.node[R, 1] - q.c[s, 1]
-        else:
-            bx, by = x, y = q.c[s, 0] - q.node[s, 0], q.c[s, 1] - q.node[s, 1]
-        new = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-        wrong = new < min(old, np.radians(12.5)) if joints.corner[k] else new > max(old, WORSE)
-        if not line[k] and not line[k - 1]:  # the run on the other side may turn as much
-            own = abs(np.arctan2(tx * y - ty * x, tx * x + ty * y))
-            wrong = own > WORSE / 2 and (not joints.corner[k] or old - 2 * own < np.radians(12.5))
-        bad[s] = bad[s] or (wrong and not q.held[s])
-
-
-@compiled
-def far_quads(
-    q: Quads, source: FloatArray, joints: Joints, i: int, j: int, tolerance: float, reached: FloatArray
-) -> BoolArray:
-    """(R,) which quadratics are not certified within the tolerance of the source (m, 4, 2)."""
-    R = len(q.c)
-    P, places, bad = np.empty((R, 4, 2)), np.empty(R + 1), np.zeros(R, dtype=np.bool_)
-    work, marks, found = room_for(1)
-    reached[1] = 0.0
-    for s in range(R):
-        as_cubic(q, s, P[s])
-    for s in range(R + 1):
-        places[s] = joints.places[q.lo[s]]
-    places[0], places[R] = i, j
-    hints = places.copy()
-    for s in range(1, R):
-        places[s] = near_place(1, source, hints[s], (hints[s - 1] + hints[s]) / 2, (hints[s] + hints[s + 1]) / 2, P, s)
-    for s in range(R):
-        found[:] = 0.0
-        pair_span(
-            1, P, s, 0.0, 1.0, source, places[s], places[s + 1], np.empty(0), True, tolerance, 0.02 * tolerance, work,
-            marks, found,
-        )  # fmt: skip
-        bad[s], reached[1] = not found[0] <= 0.999 * tolerance, max(reached[1], found[0])
-    return bad
+def read_contour(cubics: FloatArray, degrees: IntArray, settings: Settings, stored: bool) -> Given:
+    """A contour, its joints, and the tangents at these: at the ends of lines that are met smoothly, the lines'."""
+    m = len(cubics)
+    joints, line = find_joints(cubics.reshape(1, m, 4, 2), degrees, settings), degrees == 1
+    upright, cuts = set_upright(cubics, joints), joints.corner.copy()
+    slack, level = np.full(m + 1, WORSE), np.zeros(m + 1, dtype=np.bool_)
+    controls, implied = np.rint((3 * cubics[:, 1] - cubics[:, 0]) / 2), np.zeros(m, dtype=np.bool_)
+    for j in range(m):
+        _, _, ax, ay = directions(cubics, j - 1, NO_HANDLE)
+        bx, by, _, _ = directions(cubics, j, NO_HANDLE)
+        turn = turn_between(ax, ay, bx, by)
+        cuts[j] = cuts[j] or line[j] or line[j - 1] or turn > STEEP
+        implied[j] = stored and not line[j] and not line[j - 1]
+        for axis in range(2):
+            middle = (controls[j - 1, axis] + controls[j, axis]) / 2
+            implied[j] = implied[j] and abs(middle - cubics[j, 0, axis]) < 1e-6
+        if not cuts[j]:
+            continue
+        # Only beyond it is a corner still one when both sides have turned a little.
+        joints.corner[j] = turn > BLUNT
+        slack[j], level[j] = max(turn, WORSE), line[j] != line[j - 1] and turn < SMOOTH_KINK
+        if line[j] or line[j - 1]:
+            k = j if line[j] else j - 1
+            x, y = (
+                np.rint(cubics[k, 3, 0]) - np.rint(cubics[k, 0, 0]),
+                np.rint(cubics[k, 3, 1]) - np.rint(cubics[k, 0, 1]),
+            )
+            if line[j] and (x != 0.0 or y != 0.0):
+                bx, by = x, y
+            elif x != 0.0 or y != 0.0:
+                ax, ay = x, y
+        one, two = max(length(ax, ay), 1e-12), max(length(bx, by), 1e-12)
+        joints.arriving[0, j, 0], joints.arriving[0, j, 1] = ax / one, ay / one
+        joints.leaving[0, j, 0], joints.leaving[0, j, 1] = bx / two, by / two
+    cuts[m], slack[m], level[m], joints.corner[m] = cuts[0], slack[0], level[0], joints.corner[0]
+    joints.arriving[0, m], joints.leaving[0, m] = joints.arriving[0, 0], joints.leaving[0, 0]
+    return Given(cubics, line, joints, slack, level, cuts, upright, stored, controls, implied)
 
 
 @compiled
 def fit_contour(
-    cubics: FloatArray, degrees: IntArray, settings: Settings, tolerance: float
+    cubics: FloatArray, degrees: IntArray, settings: Settings, tolerance: float, stored: bool
 ) -> tuple[FloatArray, BoolArray, float]:
-    """The points of a contour (m, 4, 2) of lines and quadratics, whether they are on the curve, and how far it moved.
+    """The points of a contour (m, 4, 2), whether they are on the curve, and how far it moved, certified.
 
-    None if there is neither a corner nor an extremum on the grid at which it could begin.
+    Args:
+        stored: whether it is of lines and quadratics on the grid. None if it has neither a corner nor an extremum there
+            at which it could begin.
     """
-    m, k, reached = len(cubics), 0, np.zeros(2)
-    joints = find_joints(cubics.reshape(1, m, 4, 2), degrees, settings)
-    cuts, upright = cut_joints(cubics, degrees, joints)
-    while k < m and not cuts[k]:
+    m, k = len(cubics), 0
+    given = read_contour(cubics, degrees, settings, stored)
+    while k < m and not given.cuts[k]:
         k += 1
     if k == m:
         k = 0
-        while k < m and not (upright[k] and is_whole(cubics[k, 0])):
+        while k < m and not (given.upright[k] and (not stored or (cubics[k, 0] == np.rint(cubics[k, 0])).all())):
             k += 1
-        if k == m:
+        if k == m and stored:
             return np.empty((0, 2)), np.empty(0, dtype=np.bool_), 0.0
+        if k == m:
+            k = farthest_joint(cubics[:, 0])
     if k > 0:
         cubics, degrees = np.concatenate((cubics[k:], cubics[:k])), np.roll(degrees, -k)
-        joints = find_joints(cubics.reshape(1, m, 4, 2), degrees, settings)
-        cuts, upright = cut_joints(cubics, degrees, joints)
-    line = degrees == 1
-    points, on, count, i = np.empty((2 * m, 2)), np.empty(2 * m, dtype=np.bool_), 0, 0
+        given = read_contour(cubics, degrees, settings, stored)
+    room = 2 * MOST * 3 * m
+    points, on, count, i, reached = np.empty((room, 2)), np.empty(room, dtype=np.bool_), 0, 0, 0.0
     while i < m:
         j = i + 1
-        while j < m and not cuts[j]:
+        while j < m and not given.cuts[j]:
             j += 1
-        if degrees[i] == 1:
-            points[count], on[count] = cubics[i, 0], True
+        if given.line[i]:
+            points[count], on[count] = np.rint(cubics[i, 0]), True
             count += 1
         else:
-            count += fit_run(cubics, line, joints, upright, i, j, tolerance, points[count:], on[count:], reached)
+            more, far = fit_run(given, i, j, tolerance, points[count:], on[count:])
+            # What follows meets what is written.
+            p, joints = points[count + 1] - points[count], given.joints
+            if i == 0 and not given.line[m - 1]:
+                joints.leaving[0, m] = p / max(length(p[0], p[1]), 1e-12)
+            count, reached = count + more, max(reached, far)
+            p = np.rint(cubics[j - 1, 3]) - points[count - 1]
+            if j < m and not given.line[j]:
+                joints.arriving[0, j] = p / max(length(p[0], p[1]), 1e-12)
         i = j
-    return points[:count], on[:count], reached[0]
-
-
-@compiled
-def is_whole(p: FloatArray) -> bool:
-    """Whether a point is on the grid."""
-    return p[0] == np.rint(p[0]) and p[1] == np.rint(p[1])
-
-
-@compiled
-def cut_joints(cubics: FloatArray, degrees: IntArray, joints: Joints) -> tuple[BoolArray, BoolArray]:
-    """(m + 1,) the joints at which runs end: corners, kinks, ends of lines; their tangents stay as they are.
-
-    And the joints at which the outline has a horizontal or vertical extremum.
-    """
-    m = len(cubics)
-    upright, cuts = set_upright(cubics, joints), joints.corner.copy()
-    for j in range(m):
-        bx, by, _, _ = directions(cubics, j, NO_HANDLE)
-        _, _, ax, ay = directions(cubics, j - 1, NO_HANDLE)
-        turn = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-        cuts[j] = cuts[j] or degrees[j] == 1 or degrees[j - 1] == 1 or turn > STEEP
-        if cuts[j]:
-            one, two = length(ax, ay), length(bx, by)
-            joints.arriving[0, j, 0], joints.arriving[0, j, 1] = ax / one, ay / one
-            joints.leaving[0, j, 0], joints.leaving[0, j, 1] = bx / two, by / two
-    cuts[m] = cuts[0]
-    joints.arriving[0, m], joints.leaving[0, m] = joints.arriving[0, 0], joints.leaving[0, 0]
-    return cuts, upright
+    return points[:count], on[:count], reached

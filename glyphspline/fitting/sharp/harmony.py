@@ -20,7 +20,8 @@ from ...compiled import compiled
 from ...curves.cubics import length
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints
-from .cubics import project, solve
+from .cubics import solve
+from .nearness import add_samples, feet, reweight
 
 FIXED, HELD, AXIS, FREE = range(4)
 """What a node may do: nothing, while its handle is free, at a corner; nothing, while its handle keeps its direction;
@@ -121,7 +122,7 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
             first[k] = max(0, 5 * (k // 5 - 2))
     N = len(joints.places)
     x, weight, e, c = np.empty(N), np.ones(N), np.zeros(N), np.empty((3, 2))
-    J, row, spread, own = np.zeros((4, 2, 10)), np.empty(10), np.zeros((2, 2, 5)), np.empty((10, 11))
+    J, spread, own = np.zeros((4, 2, 10)), np.zeros((2, 2, 5)), np.empty((10, 11))
     for s in range(r):
         a, b = joints.first[i + run.places[s]], joints.first[i + run.places[s + 1]]
         for k in range(a, b + 1):
@@ -137,48 +138,13 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
             J[0, :, :5], J[1, :, :5] = spread[0], spread[1]
             set_moves(run, v, 1, s, spread)
             J[3, :, 5:], J[2, :, 5:] = spread[0], spread[1]
-            a, b = joints.first[i + run.places[s]], joints.first[i + run.places[s + 1]]
-            Q = joints.samples[0, a : b + 1]
-            worst = feet(P[s], Q, c, x[a : b + 1], e[a : b + 1])
+            a, b = joints.first[i + run.places[s]], joints.first[i + run.places[s + 1]] + 1
+            Q = joints.samples[0, a:b]
+            worst = feet(P[s], Q, c, x[a:b], e[a:b])
             if m > 0 and worst > 0.0:
-                total = 0.0
-                for k in range(a + 1, b):
-                    weight[k] *= 0.2 + e[k] / worst
-                    total += weight[k]
-                for k in range(a + 1, b):
-                    weight[k] *= (b - a - 1) / total
+                reweight(weight[a:b], e[a:b], worst)
             own[:] = 0.0
-            scale = 1 / (max(b - a - 1, 1) * tolerance * tolerance)
-            for k in range(a + 1, b):
-                t = x[k]
-                z = 1 - t
-                B0, B1, B2, B3 = z * z * z, 3 * z * z * t, 3 * z * t * t, t * t * t
-                dx = 3 * (
-                    z * z * (P[s, 1, 0] - P[s, 0, 0])
-                    + 2 * z * t * (P[s, 2, 0] - P[s, 1, 0])
-                    + t * t * (P[s, 3, 0] - P[s, 2, 0])
-                )
-                dy = 3 * (
-                    z * z * (P[s, 1, 1] - P[s, 0, 1])
-                    + 2 * z * t * (P[s, 2, 1] - P[s, 1, 1])
-                    + t * t * (P[s, 3, 1] - P[s, 2, 1])
-                )
-                size = length(dx, dy)
-                if size <= 0.0:
-                    continue
-                nx, ny = -dy / size, dx / size
-                px = B0 * P[s, 0, 0] + B1 * P[s, 1, 0] + B2 * P[s, 2, 0] + B3 * P[s, 3, 0]
-                py = B0 * P[s, 0, 1] + B1 * P[s, 1, 1] + B2 * P[s, 2, 1] + B3 * P[s, 3, 1]
-                gap = nx * (joints.samples[0, k, 0] - px) + ny * (joints.samples[0, k, 1] - py)
-                for q in range(10):
-                    row[q] = nx * (B0 * J[0, 0, q] + B1 * J[1, 0, q] + B2 * J[2, 0, q] + B3 * J[3, 0, q]) + ny * (
-                        B0 * J[0, 1, q] + B1 * J[1, 1, q] + B2 * J[2, 1, q] + B3 * J[3, 1, q]
-                    )
-                w = scale * weight[k]
-                for q in range(10):
-                    own[q, 10] += w * row[q] * gap
-                    for p in range(q + 1):
-                        own[q, p] += w * row[q] * row[p]
+            add_samples(P[s], c, Q, x[a:b], weight[a:b], J, tolerance, own)
             for q in range(10):
                 at = 5 * u + q if q < 5 else 5 * v + q - 5
                 g[at] += own[q, 10]
@@ -209,16 +175,6 @@ def align(run: Run) -> None:
             size = max(size, SHORTEST * length(p[3, 0] - p[0, 0], p[3, 1] - p[0, 1]))
             for axis in range(2):
                 p[1 + end, axis] = p[3 * end, axis] + (1 - 2 * end) * size * run.T[k, axis]
-
-
-@compiled
-def feet(p: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
-    """Pair samples with points of a cubic, see :func:`.cubics.project`, which takes it about the first sample."""
-    for axis in range(2):
-        c[0, axis] = 3 * (p[1, axis] - p[0, axis])
-        c[1, axis] = 3 * (p[2, axis] - 2 * p[1, axis] + p[0, axis])
-        c[2, axis] = p[3, axis] - p[0, axis] - 3 * (p[2, axis] - p[1, axis])
-    return project(Q, p[0, 0], p[0, 1], c, x, e)
 
 
 @compiled

@@ -1,0 +1,131 @@
+"""How near cubics are to the samples of an outline: as equations of what moves their points, and as a certificate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import length
+from ...curves.nearest import near_place
+from ...curves.pairing import pair_span, room_for
+from ...types import BoolArray, FloatArray
+from .cubics import project
+
+
+@compiled
+def feet(p: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+    """Pair samples with points of a cubic, see :func:`.cubics.project`, which takes it about the first sample.
+
+    Args:
+        c: (3, 2) receives the cubic's coefficients. x, e: (n,) places on it, and distances.
+    """
+    for axis in range(2):
+        c[0, axis] = 3 * (p[1, axis] - p[0, axis])
+        c[1, axis] = 3 * (p[2, axis] - 2 * p[1, axis] + p[0, axis])
+        c[2, axis] = p[3, axis] - p[0, axis] - 3 * (p[2, axis] - p[1, axis])
+    return project(Q, p[0, 0], p[0, 1], c, x, e)
+
+
+@compiled
+def reweight(weight: FloatArray, e: FloatArray, worst: float) -> None:
+    """Weights of inner samples grow with their errors, their mean staying 1: squares turn to the least maximum."""
+    n, total = len(weight), 0.0
+    for k in range(1, n - 1):
+        weight[k] *= 0.2 + e[k] / worst
+        total += weight[k]
+    for k in range(1, n - 1):
+        weight[k] *= (n - 2) / total
+
+
+@compiled
+def add_samples(
+    p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, J: FloatArray, unit: float,
+    own: FloatArray,
+) -> float:  # fmt: skip
+    """Add the normal equations of what brings a cubic nearer to samples, across it.
+
+    Args:
+        p: (4, 2) the cubic. c, x: of :func:`feet`. Q: (n, 2), weight: (n,) samples.
+        J: (4, 2, u) how u unknowns move its points. unit: of length.
+        own: (u, u + 1) the lower half of the form, and its right-hand side.
+
+    Returns:
+        The mean squared distance as it is.
+    """
+    n, u = len(Q), J.shape[2]
+    row, rest, scale = np.empty(u), 0.0, 1 / (max(n - 2, 1) * unit * unit)
+    for k in range(1, n - 1):
+        t = x[k]
+        z = 1 - t
+        dx, dy = (3 * c[2, 0] * t + 2 * c[1, 0]) * t + c[0, 0], (3 * c[2, 1] * t + 2 * c[1, 1]) * t + c[0, 1]
+        size = length(dx, dy)
+        if size <= 0.0:
+            continue
+        nx, ny = -dy / size, dx / size
+        px = ((c[2, 0] * t + c[1, 0]) * t + c[0, 0]) * t + p[0, 0]
+        py = ((c[2, 1] * t + c[1, 1]) * t + c[0, 1]) * t + p[0, 1]
+        gap, w = nx * (Q[k, 0] - px) + ny * (Q[k, 1] - py), scale * weight[k]
+        B0, B1, B2, B3 = z * z * z, 3 * z * z * t, 3 * z * t * t, t * t * t
+        rest += w * gap * gap
+        for i in range(u):
+            row[i] = nx * (B0 * J[0, 0, i] + B1 * J[1, 0, i] + B2 * J[2, 0, i] + B3 * J[3, 0, i]) + ny * (
+                B0 * J[0, 1, i] + B1 * J[1, 1, i] + B2 * J[2, 1, i] + B3 * J[3, 1, i]
+            )
+            own[i, u] += w * row[i] * gap
+            for j in range(i + 1):
+                own[i, j] += w * row[i] * row[j]
+    return rest
+
+
+@compiled
+def squares(points: FloatArray, exact: FloatArray, own: FloatArray, rest: float) -> float:
+    """The mean squared distance of samples when points (k, 2) move from the exact ones.
+
+    Args:
+        own: (2 k, 2 k + 1), rest: of :func:`add_samples`, with the points' coordinates as the unknowns.
+    """
+    n = 2 * len(points)
+    for i in range(n):
+        move = points[i // 2, i % 2] - exact[i // 2, i % 2]
+        if move == 0.0:
+            continue
+        part = own[i, i] * move - 2 * own[i, n]
+        for j in range(i):
+            part += 2 * own[i, j] * (points[j // 2, j % 2] - exact[j // 2, j % 2])
+        rest += move * part
+    return rest
+
+
+@compiled
+def certified(
+    V: int, chain: FloatArray, hints: FloatArray, stays: BoolArray, skip: BoolArray, closed: bool, other: FloatArray,
+    arc: FloatArray, tolerance: float,
+) -> FloatArray:  # fmt: skip
+    """(r,) bounds of the distance of cubics from stretches of the source, in V instances; inf where not finite.
+
+    Args:
+        chain: (r V, 4, 2) the cubics. other: (m V, 4, 2) the source. arc: see :func:`...curves.pairing.pair_span`.
+        hints: (r + 1,) places of the source near which the cubics begin and end. stays: (r + 1,) where exactly there.
+        skip: (r,) which cubics are not measured, and get 0. closed: whether the last end is the first again.
+    """
+    r, m = len(chain) // V, len(other) // V
+    work, marks, found = room_for(V)
+    places, bounds = hints.copy(), np.zeros(r)
+    for s in range(r):
+        if not stays[s]:
+            low, here, high = hints[s - 1] if s > 0 else hints[r - 1] - m, hints[s], hints[s + 1]
+            places[s] = near_place(V, other, here, (low + here) / 2, (here + high) / 2, chain, s)
+    if closed:
+        places[r] = places[0] + m
+    if places[0] < 0.0:
+        places += m
+    for s in range(r):
+        if skip[s]:
+            continue
+        found[:] = 0.0
+        pair_span(
+            V, chain, s, 0.0, 1.0, other, places[s], places[s + 1], arc, True, tolerance, 0.02 * tolerance, work,
+            marks, found,
+        )  # fmt: skip
+        bounds[s] = found[0] if np.isfinite(chain[s * V : (s + 1) * V]).all() else np.inf
+    return bounds
