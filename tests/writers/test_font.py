@@ -128,6 +128,17 @@ def test_kept_glyphs_of_the_same_format_are_the_very_same(tmp_path: Path) -> Non
                 np.testing.assert_array_equal(a.points, b.points)
 
 
+def test_alignment_zones_stay_for_hinters(tmp_path: Path) -> None:
+    font = TTFont(FONTS / "kouzan-gyosho.otf")
+    font["CFF "].cff.topDictIndex[0].Private.BlueValues = [-12, 0, 700, 712]
+    font["CFF "].cff.topDictIndex[0].Private.StdVW = 80
+    font.save(tmp_path / "zones.otf")
+    source = open_font(tmp_path / "zones.otf")
+    data, _ = to_font(source, [gs.convert(source.outline(source.glyph_names[1]), gs.Options(count=12))], "otf")
+    private = TTFont(BytesIO(data))["CFF "].cff.topDictIndex[0].Private
+    assert (private.BlueValues, private.StdVW) == ([-12, 0, 700, 712], 80)
+
+
 def test_composites_of_replaced_glyphs_look_as_before(tmp_path: Path) -> None:
     source = open_font(FONTS / "edge-cases.ttf")
     data, _ = to_font(source, [gs.convert(source.outline("a"), gs.Options(count=12))], "ttf")

@@ -46,6 +46,9 @@ log = logging.getLogger(__name__)
 HINTS = ("cvt ", "cvar", "fpgm", "prep", "gasp", "hdmx", "VDMX", "LTSH", "TSI0", "TSI1", "TSI2", "TSI3", "TSI5", "TSIV")
 """Hints, which refer to points of the old outlines."""
 
+ZONES = ("BlueValues", "OtherBlues", "FamilyBlues", "FamilyOtherBlues", "StdHW", "StdVW", "StemSnapH", "StemSnapV")
+"""What hinters read of a font: heights, which outlines keep, and widths of stems. By itself it hints nothing."""
+
 PICTURES = ("EBDT", "EBLC", "EBSC", "CBDT", "CBLC", "sbix", "SVG ", "bdat", "bloc")
 """Pictures of glyphs, which renderers prefer to outlines."""
 
@@ -144,11 +147,18 @@ class _InPlace:
         self.new: dict[str, Any] = {}  # for "glyf", which is read until all glyphs are known
         if flavour == "otf":
             self.strings = font["CFF "].cff.topDictIndex[0].CharStrings
+            top = font["CFF "].cff.topDictIndex[0]
+            fonts = [each.Private for each in getattr(top, "FDArray", [top])]
+            zones = [{key: getattr(each, key, None) for key in ZONES} for each in fonts]
             try:
                 font["CFF "].cff.remove_hints()
             except Exception:  # of a broken glyph, as in readers
                 _empty_broken(self.strings)
                 font["CFF "].cff.remove_hints()
+            for private, values in zip(fonts, zones, strict=True):
+                for key, value in values.items():
+                    if value is not None:
+                        setattr(private, key, value)
 
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]

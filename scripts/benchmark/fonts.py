@@ -1,0 +1,149 @@
+"""What fonts store of ``--continuity g2``: curves, kinks and jumps of text faces, written and read back by fontTools.
+
+Kinks and jumps are counted by this program alone: turns of 0.5 to 12 degrees where the source has none such within
+3/1000 em, and curvatures that differ by a tenth where a smooth joint has curves on both sides. FontForge has the
+benefit of the doubt as in :mod:`.faithful`.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import process_time
+
+import numpy as np
+from fontTools.ttLib import TTFont
+
+import glyphspline as gs
+from glyphspline.fitting.options import FOR_FONTS
+from glyphspline.readers import AnySource
+from glyphspline.types import FloatArray
+from glyphspline.writers.font.font_file import write_font
+
+from ..survey import SegmentPen, faces
+from .faithful import fewest, forge_results, numbers, to_em
+from .measure import Row
+
+LATIN = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
+HAN = "".join(map(chr, range(0x4E00, 0x9F00, 420)))
+FACES = {
+    "EB Garamond": ("EBGaramond12-Regular.otf", LATIN), "STIX": ("STIXGeneral-Regular.otf", LATIN),
+    "Latin Modern": ("lmroman10-regular.otf", LATIN), "Libertine": ("LinLibertine_R.otf", LATIN),
+    "Inter": ("Inter-Regular.otf", LATIN), "DejaVu Serif": ("DejaVuSerif.ttf", LATIN), "cmr10": ("cmr10.ttf", LATIN),
+    "Noto Serif CJK": ("NotoSerifCJK-Regular.ttc", HAN),
+}  # fmt: skip
+"""Files and characters."""
+
+OPTIONS = gs.Options(**FOR_FONTS)
+FORGED = int(os.environ.get("GLYPHSPLINE_BENCH_FORGED", "63"))
+"""Glyphs of a face that FontForge simplifies."""
+
+
+def rows() -> list[Row]:
+    """All faces that are installed, or lie in a folder of GLYPHSPLINE_FACES."""
+    return [
+        row for name, (file, text) in FACES.items() for path in faces(file)[:1] for row in face_rows(name, path, text)
+    ]
+
+
+def face_rows(name: str, path: Path, text: str) -> list[Row]:
+    """Totals of a face."""
+    font = gs.open_font(path)
+    glyphs = [outline for outline in font.outlines(font.select(text=text)) if outline.contours]
+    gs.convert(glyphs[0], OPTIONS)
+    start = process_time()
+    results = gs.convert_many(glyphs, OPTIONS)
+    spent = (process_time() - start) / len(glyphs)
+    quadratic = all((outline.arrays.degrees < 3).all() for outline in glyphs)
+    found, note = [], f"{len(glyphs)} glyphs"
+    for flavour in ("ttf",) if quadratic else ("otf", "ttf"):
+        with TemporaryDirectory() as folder:
+            file = Path(folder, f"new.{flavour}")
+            write_font(font, results, file, tolerance=font.metrics.units_per_em / 1000)
+            found += written_rows(f"{name}, {flavour}", path, file, [g.name for g in glyphs], font)
+    if not quadratic:
+        few = [to_em(outline) for outline in glyphs[:: max(1, len(glyphs) // FORGED)]]
+        forge = np.array([fewest(g, r) for g, r in zip(few, forge_results(few), strict=True)], dtype=np.float64)
+        made = [gs.convert(g, OPTIONS) for g in few]
+        own = np.array([[len(r.arrays.curves.degrees), sum(numbers(c.curve) for c in r.contours)] for r in made])
+        share = np.median(own / forge, axis=0)
+        found.append(Row(f"{name}: numbers / FontForge's", share[1], "x", 1.0, 0.92, False, "median of the glyphs"))
+    return [*found, Row(f"{name}: fast, a glyph", spent * 1e3, "ms", 10 if text == HAN else 4, None, False, note)]
+
+
+def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: AnySource) -> list[Row]:
+    """What is in the written file, against the source's."""
+    em, new, jumps, old_jumps = font.metrics.units_per_em, 0, 0, 0
+    before, after = (TTFont(file, fontNumber=0) for file in (source, made))
+    counts, order = np.zeros(2), (before.getGlyphOrder(), after.getGlyphOrder())
+    for glyph in glyphs:
+        number = font.glyph_names.index(glyph)
+        old, own = (joints(each, names[number], em) for each, names in zip((before, after), order, strict=True))
+        for k, (each, names) in enumerate(zip((before, after), order, strict=True)):
+            counts[k] += points_in(each, names[number]) if "glyf" in before else curves_in(each, names[number])
+        kinks = own[is_kink(own)]
+        there = old[is_kink(old)]
+        for x, y, turn, *_ in kinks:
+            new += not ((np.hypot(there[:, 0] - x, there[:, 1] - y) < 3e-3 * em) & (there[:, 2] > turn - 0.3)).any()
+        jumps, old_jumps = jumps + int(own[:, 3].sum()), old_jumps + int(old[:, 3].sum())
+    rows = [Row(f"{name}: kinks that the source has not", new, "", 0, None, False)]
+    if ("glyf" in before) == ("glyf" in after):
+        what = "points" if "glyf" in before else "curves"
+        rows.append(Row(f"{name}: {what} / source's", counts[1] / counts[0], "x", 1.0, 0.85, False))
+        if "CFF " in after:
+            rows.append(Row(f"{name}: jumps of curvature / source's", jumps / max(old_jumps, 1), "x", 0.1, 0.03, False))
+    return rows
+
+
+def is_kink(rows: FloatArray) -> FloatArray:
+    """Which joints turn by 0.5 to 12 degrees, two lines apart."""
+    return (rows[:, 2] >= 0.5) & (rows[:, 2] <= 12) & (rows[:, 4] == 0)
+
+
+def points_in(font: TTFont, glyph: str) -> int:
+    """Points that TrueType stores."""
+    return len(font["glyf"][glyph].getCoordinates(font["glyf"])[0])
+
+
+def segments(font: TTFont, glyph: str) -> list[list[FloatArray]]:
+    """The segments of each contour that have a length."""
+    glyphs = font.getGlyphSet()
+    pen = SegmentPen(glyphs)
+    glyphs[glyph].draw(pen)
+    return [[s for s in map(np.asarray, contour) if np.ptp(s, axis=0).any()] for contour in pen.contours]
+
+
+def curves_in(font: TTFont, glyph: str) -> int:
+    """Segments that are no lines."""
+    return sum(len(s) > 2 for contour in segments(font, glyph) for s in contour)
+
+
+def joints(font: TTFont, glyph: str, em: float) -> FloatArray:
+    """(n, 5) place, turn in degrees, whether the curvature jumps there, and whether both sides are lines."""
+    found = [
+        joint(before, behind, em)
+        for contour in segments(font, glyph)
+        for before, behind in zip([contour[-1], *contour[:-1]], contour, strict=True)
+        if contour
+    ]
+    return np.array(found, dtype=np.float64).reshape(-1, 5)
+
+
+def joint(before: FloatArray, behind: FloatArray, em: float) -> tuple[float, ...]:
+    """A row of :func:`joints`."""
+    (a, one), (b, other) = end_of(before[::-1]), end_of(behind)
+    turn = np.degrees(abs(np.arctan2(b[0] * a[1] - b[1] * a[0], -(a @ b))))
+    lines, most = (len(before) == 2) + (len(behind) == 2), max(abs(one), abs(other))
+    jump = lines == 0 and turn < 3 and 1 / em < most < np.inf and abs(one + other) > 0.1 * most
+    return (*behind[0], turn, float(jump), float(lines == 2))
+
+
+def end_of(points: FloatArray) -> tuple[FloatArray, float]:
+    """Where a segment leaves its first point to, and with which curvature."""
+    arm = next(p - points[0] for p in points[1:] if (p != points[0]).any())
+    if len(points) == 2:
+        return arm, 0.0
+    a, b, n = points[1] - points[0], points[2] - points[1], len(points) - 1
+    size = np.hypot(*a)
+    return arm, float((n - 1) / n * (a[0] * b[1] - a[1] * b[0]) / size**3) if size else np.inf
