@@ -81,9 +81,8 @@ class Unfinished:
         from pyarrow import parquet
 
         try:
-            table = parquet.read_table(
-                self._folder / str(number), page_checksum_verification=True, partitioning=None, memory_map=False
-            )
+            with parquet.ParquetFile(self._folder / str(number), page_checksum_verification=True) as file:
+                table = file.read()
         except (OSError, pa.ArrowException):
             return []
         if (table.schema.metadata or {}).get(b"mark") != self._mark:
