@@ -161,23 +161,18 @@ def info(
 
     facts = file_facts(font, instance.face_index, instance.place)
     if deep:
-        look_deep(font, facts)
+        from ..readers.open import STDIN, standard_input
+        from ..runs.jobs.deep_facts import add_glyph_facts
+        from ..runs.schedule import workers
+
+        path = standard_input() if str(font) == STDIN else font
+        # In processes with a time limit: counting the contours of a hostile font can take years.
+        with workers(None) as executor, progress(quiet=False) as observer:
+            add_glyph_facts(path.absolute(), facts, executor, observer)
     if run.as_json:
         print_json(facts)
     else:
         typer.echo(printable("\n".join(font_lines(facts))))
-
-
-def look_deep(font: Path, facts: dict[str, Any]) -> None:
-    """Add what needs all outlines, with progress on a terminal."""
-    from ..readers.open import STDIN, standard_input
-    from ..runs.jobs.deep_facts import add_glyph_facts
-    from ..runs.schedule import workers
-
-    path = standard_input() if str(font) == STDIN else font
-    # In processes with a time limit: counting the contours of a hostile font can take years.
-    with workers(None) as executor, progress(quiet=False) as observer:
-        add_glyph_facts(path.absolute(), facts, executor, observer)
 
 
 @app.command()

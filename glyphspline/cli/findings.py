@@ -43,17 +43,13 @@ def columns(found: Sequence[tuple[Face, Finding]], several: bool) -> tuple[list[
     headings = ["font"] * several + ["glyph", "level", *NUMBERS, "finding"] + ["location"] * located
     rows = [
         [face.font] * several
-        + [finding.glyph, finding.level, score_words(face, finding), str(finding.contour), str(finding.segment)]
+        + [finding.glyph, finding.level, f"{face.scores.get(finding.glyph, 0.0):.0f}"]
+        + [str(finding.contour), str(finding.segment)]
         + ["{:.0f}, {:.0f}".format(*finding.point), f"{finding.kind}: {finding.sentence}"]
         + [place_on_axes(finding, face.home)] * located
         for face, finding in found
     ]
     return headings, rows
-
-
-def score_words(face: Face, finding: Finding) -> str:
-    """The score of a finding's glyph, in whole thousandths of an em."""
-    return f"{face.scores.get(finding.glyph, 0.0):.0f}"
 
 
 def table(found: Sequence[tuple[Face, Finding]], several: bool) -> str:

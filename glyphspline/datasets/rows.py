@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from typing import Any
+from unicodedata import category
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from ..writers.parquet import arrow, fit_columns, measure_columns, nested, pairs, source_columns
 from .columns import OF_FONTS, OF_GLYPHS, SCHEMA_VERSION, schema, type_of
-from .scan import FontFacts, category_of, script_of
+from .scan import FontFacts, script_of
 from .spec import DatasetSpec
 
 
@@ -168,8 +169,8 @@ def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: Da
         "split": font.split, "font": font.sha256, "face": font.face, "duplicate": None,
     }  # fmt: skip
     columns = {name: pa.repeat(pa.scalar(value, layout.field(name).type), len(codes)) for name, value in values.items()}
-    for name, of_character in (("script", script_of), ("category", category_of)):
-        columns[name] = pa.array([None if code is None else of_character(code) for code in codes], pa.string())
+    for name, of_character in (("script", script_of), ("category", category)):
+        columns[name] = pa.array([None if code is None else of_character(chr(code)) for code in codes], pa.string())
     return pa.Table.from_arrays([*table.columns, *(columns[name] for name in OF_FONTS)], schema=layout)
 
 

@@ -133,7 +133,7 @@ def facts_of(source: Source, spec: DatasetSpec) -> Iterator[FontFacts]:
         style=source.style, axes=tuple(f"{a.tag}={a.minimum:g}:{a.default:g}:{a.maximum:g}" for a in source.axes),
         units_per_em=source.metrics.units_per_em, ascender=source.metrics.ascender,
         descender=source.metrics.descender, glyphs=len(source.glyph_names), characters=len(source.cmap),
-        scripts=tuple(sorted({script_of(code) for code in source.cmap} - shared)),
+        scripts=tuple(sorted({script_of(chr(code)) for code in source.cmap} - shared)),
         **{"licence": UNKNOWN} | _of_names(tables),
     )  # fmt: skip
     facts = chosen(facts, source, spec)
@@ -198,16 +198,11 @@ def _printable(text: str | None) -> str | None:
     return " ".join("".join(c if c.isprintable() else " " for c in text or "").split()) or None
 
 
-def script_of(code: int) -> str:
+def script_of(character: str) -> str:
     """The script of a character by ISO 15924."""
     from fontTools.unicodedata import script
 
-    return str(script(chr(code)))
-
-
-def category_of(code: int) -> str:
-    """The general category of a character: "Lu"."""
-    return unicodedata.category(chr(code))
+    return str(script(character))
 
 
 def selected(source: Source, spec: DatasetSpec) -> list[int]:
@@ -216,7 +211,7 @@ def selected(source: Source, spec: DatasetSpec) -> list[int]:
         return list(range(len(source.glyph_names)))
     asked = set(map(ord, spec.characters))
     codes = [code for code in source.cmap if not asked or code in asked]
-    names = {source.cmap[code] for code in codes if not spec.scripts or script_of(code) in spec.scripts}
+    names = {source.cmap[code] for code in codes if not spec.scripts or script_of(chr(code)) in spec.scripts}
     return [gid for gid, name in enumerate(source.glyph_names) if name in names]
 
 
