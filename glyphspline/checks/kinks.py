@@ -8,11 +8,11 @@ directions. Every joint is a row of findings at its worst place; :func:`glyphspl
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
-from typing import NamedTuple, Protocol, overload
+from typing import Any, NamedTuple, Protocol, overload
 
 import numpy as np
 
@@ -95,17 +95,10 @@ class AxisNumbers:
 
     def __add__(self, other: AxisNumbers) -> AxisNumbers:
         """Those of the glyphs of both, along the same axis."""
-        return AxisNumbers(
-            self.axis, self.joints + other.joints, tuple(sorted({*self.masters, *other.masters})),
-            _larger(self.largest_turn, other.largest_turn),
-            _larger(self.largest_turn_at_masters, other.largest_turn_at_masters),
-            _larger(self.largest_made, other.largest_made), self.turns_over_1 + other.turns_over_1,
-            self.made_over_1 + other.made_over_1, self.jumps_over_10_percent + other.jumps_over_10_percent,
-        )  # fmt: skip
-
-
-def _larger(a: float | None, b: float | None) -> float | None:
-    return max([value for value in (a, b) if value is not None], default=None)
+        pairs: list[Any] = [*zip(astuple(self), astuple(other), strict=True)]
+        largest: list[Any] = [max((value for value in pair if value is not None), default=None) for pair in pairs[3:6]]
+        masters = tuple(sorted({*self.masters, *other.masters}))
+        return AxisNumbers(self.axis, sum(pairs[1]), masters, *largest, *map(sum, pairs[6:]))
 
 
 @dataclass(frozen=True, eq=False)

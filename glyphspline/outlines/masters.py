@@ -255,6 +255,11 @@ def region_scalars(regions: FloatArray, at: FloatArray) -> FloatArray:
     return np.concatenate([np.ones((*whole.shape[:-1], 1)), whole], axis=-1)
 
 
+def stacked(regions: Iterable[Region], axes: int) -> FloatArray:
+    """(R, A, 3) regions as an array."""
+    return np.array([*regions], dtype=np.float64).reshape(-1, axes, 3)
+
+
 def distinct_regions(regions: Iterable[Region]) -> list[Region]:
     """Regions of distinct peaks, whose scalars combine linearly to those of the given regions.
 

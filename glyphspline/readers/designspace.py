@@ -12,7 +12,6 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument
@@ -24,9 +23,8 @@ from fontTools.varLib.models import VariationModel, normalizeValue
 
 from ..errors import FontError, GlyphsplineError
 from ..extras import need
-from ..outlines.masters import DesignAxis, Masters, Region, distinct_regions
+from ..outlines.masters import DesignAxis, Masters, Region, distinct_regions, stacked
 from ..outlines.outline import Outline
-from ..types import FloatArray
 from .pens import MAX_COMPONENTS, ContourPen, enter_component
 from .source import Head, Location, Source, parsed
 from .ufo import Drawing, Ufo
@@ -123,13 +121,13 @@ class Designspace(Source):
         drawn = [drawn[k] for k in model.reverseMapping]  # the default first
         for master, parts, _ in drawn[1:]:
             _compare(parts, drawn[0][1], master.name, drawn[0][0].name)
-        own = Masters(name, axes=self.axes, regions=self._stacked(map(self._region, model.supports[1:])))
+        own = Masters(name, axes=self.axes, regions=stacked(map(self._region, model.supports[1:]), len(self.axes)))
         names = [part.base for part in drawn[0][1] if part.base is not None]
         if len(names) > MAX_COMPONENTS:
             raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
         children = {base: self._mixed(base, nesting)[0] for base in dict.fromkeys(names)}
         regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
-        found = replace(own, regions=self._stacked(distinct_regions(regions)), metrics=self.metrics)
+        found = replace(own, regions=stacked(distinct_regions(regions), len(self.axes)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
         pen = ContourPen(masters=len(found))
         notes: list[str] = []
@@ -174,9 +172,6 @@ class Designspace(Source):
 
     def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
         return tuple(support.get(axis.tag, (0.0, 0.0, 0.0)) for axis in self.axes)
-
-    def _stacked(self, regions: Any) -> FloatArray:
-        return np.array([*regions], dtype=np.float64).reshape(-1, len(self.axes), 3)
 
 
 @dataclass(frozen=True)

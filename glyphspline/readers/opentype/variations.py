@@ -19,7 +19,7 @@ from fontTools.ttLib.tables._g_l_y_f import SCALED_COMPONENT_OFFSET, USE_MY_METR
 from fontTools.varLib.iup import iup_delta
 
 from ...errors import GlyphsplineError
-from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, quadratics, region_scalars
+from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, quadratics, region_scalars, stacked
 from ...outlines.outline import FontMetrics
 from ...types import BoolArray, FloatArray
 from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, enter_component
@@ -72,11 +72,8 @@ class Variations:
         regions = distinct_regions(stored)
         if len(regions) >= MOST_MASTERS:
             raise GlyphsplineError(f"{len(regions) + 1} masters, more than {MOST_MASTERS}")
-        masters = Masters(*head, self.axes, self._stacked(regions), metrics=self._metrics)
-        return masters, region_scalars(self._stacked(stored), masters.peaks)
-
-    def _stacked(self, regions: Sequence[Region]) -> FloatArray:
-        return np.array(regions, dtype=np.float64).reshape(len(regions), len(self.axes), 3)
+        masters = Masters(*head, self.axes, stacked(regions, len(self.axes)), metrics=self._metrics)
+        return masters, region_scalars(stacked(stored, len(self.axes)), masters.peaks)
 
     def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
         """A region of tuples by tag; on axes where the format says that it counts nothing, zeros."""
@@ -180,7 +177,7 @@ class Variations:
         pen = ContourPen(masters=len(masters))
         string.draw(pen, lambda _, deltas: scalars[:, 1:] @ np.array(deltas, dtype=np.float64))
         pen.finish()
-        changed = region_scalars(self._stacked(regions), masters.peaks)[:, 1:] @ changes
+        changed = region_scalars(stacked(regions, len(self.axes)), masters.peaks)[:, 1:] @ changes
         advances = float(self._tables["hmtx"].metrics[head.name][0]) + changed
         contours = tuple(pen.stacks)
         return replace(masters, contours=contours, advances=advances, notes=pen.notes, repeats=pen.repeated)
