@@ -235,7 +235,7 @@ def plot(
     Returns:
         The axes.
     """
-    from .writers.figures.basics import outline_patch
+    from .writers.figures.basics import outline_patch, ring
 
     marks = _marks(thing) if isinstance(thing, Interpolation) else {}
     drawn = thing.spline if isinstance(thing, Interpolation) else thing
@@ -274,9 +274,9 @@ def plot(
     for patch in patches:
         axes.add_patch(patch)
     for corners in polygons if polygon else ():
-        axes.plot(*_closed(corners).T, ".-", color="tab:green", linewidth=0.7, markersize=3)
+        axes.plot(*ring(corners).T, ".-", color="tab:green", linewidth=0.7, markersize=3)
     for spline in splines if control_polygon else ():
-        points = _closed(spline.control_points) if spline.closed else spline.control_points
+        points = ring(spline.control_points) if spline.closed else spline.control_points
         axes.plot(*points.T, ".--", color="tab:purple", linewidth=0.7, markersize=3)
     for name, points in marks.items():
         colour, share = MARKS[name]
@@ -304,7 +304,3 @@ def _comb_patches(
     found = [item for item, _ in drawn]
     unit = robust_scale(found) if scale is None else scale
     return comb_patches([teeth_of(item, em, unit, side) for item, side in drawn], closed=closed, width=0.6)
-
-
-def _closed(points: FloatArray) -> FloatArray:
-    return np.concatenate([points, points[:1]])

@@ -7,7 +7,7 @@ from math import isinf
 
 from ..comparing.difference import Difference, Turn
 from ..outlines.outline import Contour, Contours, Outline
-from ..types import rounded_up
+from ..types import rounded_up, shortened
 from ..writers.svg.document import number, text, union, view_box_value
 from ..writers.svg.path_data import Box, curves_data
 from .pages import page_of
@@ -119,8 +119,7 @@ def lines(each: Difference) -> list[tuple[str, str]]:
 
 def kinks(turns: Sequence[Turn]) -> str:
     """Kinks in words, the first three."""
-    shown = [f"{turn.degrees:.3g}° at {where(turn.point)}" for turn in turns[:3]]
-    return "; ".join(shown) + (f"; and {len(turns) - 3} more" if len(turns) > 3 else "")
+    return "; ".join(shortened([f"{turn.degrees:.3g}° at {where(turn.point)}" for turn in turns], 3))
 
 
 def where(point: tuple[float, float]) -> str:

@@ -147,12 +147,12 @@ def drawings() -> None:
     """Curvature maps, and what the gallery shows."""
     from ..fitting.results import as_glyph
     from ..writers.svg.curvature_map import to_curvature_svg
-    from ..writers.svg.document import to_polygon_svg
+    from ..writers.svg.document import polygon_document
 
     to_curvature_svg(as_glyph(SHAPES))  # before anything is fitted: another process may be compiling that
     glyph = converted(Options(step=20.0))
     to_curvature_svg(glyph)
-    to_polygon_svg(glyph)
+    polygon_document(glyph)
 
 
 def fonts() -> None:

@@ -6,9 +6,10 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+from typing import Any, Literal, NamedTuple, TypeAlias
 
-from ..errors import OptionError, is_number, is_positive, require, require_choice
+from ..errors import OptionError, is_number, require
+from ..fields import Rule, check, option, positive
 
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
 Align: TypeAlias = Literal["start", "center", "end", "justify"]
@@ -79,41 +80,39 @@ def check_features(features: Sequence[Feature], faces: Iterable[Any]) -> None:
             raise OptionError(f"the font has no feature {feature.tag!r}; {has}")
 
 
+def _is_script(code: Any) -> bool:
+    from fontTools.unicodedata import script_name
+
+    return isinstance(code, str) and bool(script_name(code.title(), ""))
+
+
+SCRIPT = Rule("a code of ISO 15924, such as 'Latn' or 'Arab'", _is_script)
+TAG = Rule(
+    "a tag of BCP 47, such as 'de' or 'zh-Hant'", lambda tag: bool(isinstance(tag, str) and LANGUAGE.fullmatch(tag))
+)
+LENGTH = positive("length in font units")
+
+
 @dataclass(frozen=True)
 class Setting:
     """The typographic arguments of :func:`.lay_out.layout`, by the same names."""
 
     features: str = ""
-    script: str | None = None
-    language: str | None = None
-    direction: Direction | None = None
-    width: float | None = None
-    align: Align = "start"
-    line_height: float | None = None
-    orientation: Orientation = "mixed"
-    letter_spacing: float = 0.0
+    script: str | None = option(None, "Of all text.", rule=SCRIPT)
+    language: str | None = option(None, "Of all text.", rule=TAG)
+    direction: Direction | None = option(None, "Of paragraphs, or of columns.")
+    width: float | None = option(None, "Of lines.", rule=LENGTH)
+    align: Align = option("start", "Of lines.")
+    line_height: float | None = option(None, "From baseline to baseline.", rule=LENGTH)
+    orientation: Orientation = option("mixed", "Of characters in columns.")
+    letter_spacing: float = option(0.0, "Between clusters.", rule=Rule("a finite length in font units", is_number))
     parsed_features: tuple[Feature, ...] = field(init=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parsed_features", parsed_features(self.features))
+        check(self)
         if self.script is not None:
-            from fontTools.unicodedata import script_name
-
-            known = isinstance(self.script, str) and script_name(self.script.title(), "")
-            require(bool(known), "script is a code of ISO 15924, such as 'Latn' or 'Arab'", self.script)
             object.__setattr__(self, "script", self.script.title())
-        if self.language is not None:
-            named = isinstance(self.language, str) and LANGUAGE.fullmatch(self.language)
-            require(bool(named), "language is a tag of BCP 47, such as 'de' or 'zh-Hant'", self.language)
-        if self.direction is not None:
-            require_choice("direction", self.direction, ("ltr", "rtl", "ttb", "btt"))
-        for name in ("width", "line_height"):
-            value = getattr(self, name)
-            require(value is None or is_positive(value), f"{name} is a positive length in font units", value)
-        spacing = self.letter_spacing
-        require(is_number(spacing), "letter_spacing is a finite length in font units", spacing)
-        require_choice("align", self.align, get_args(Align))
-        require_choice("orientation", self.orientation, ("mixed", "upright"))
 
     @cached_property
     def vertical(self) -> bool:

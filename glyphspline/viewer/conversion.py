@@ -31,6 +31,7 @@ from ..outlines.outline import Contour, Contours, Outline
 from ..readers import Font, open_font
 from ..types import BoolArray, FloatArray, rounded_up
 from ..typesetting.lay_out import layout
+from ..writers.json_file import finite
 from ..writers.svg.comb import curvature_scale
 from ..writers.svg.document import code_points
 from ..writers.svg.path_data import path_data, polyline_data
@@ -287,8 +288,3 @@ def interval_data(arc: Interpolation) -> str:
 def points(array: FloatArray) -> list[list[float]]:
     """(n, 2) as pairs, y down."""
     return (np.round(array * (1, -1), DIGITS) + 0.0).tolist()
-
-
-def finite(value: Any) -> Any:
-    """The value, or None for a float that JSON cannot express."""
-    return None if isinstance(value, float) and not np.isfinite(value) else value

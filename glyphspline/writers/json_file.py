@@ -64,7 +64,7 @@ def head(glyph: GlyphResult, settings: Settings) -> dict[str, Any]:
 
 
 def _contour(contour: ContourResult, scale: float) -> dict[str, Any]:
-    measures = {name: _finite(value) for name, value in asdict(contour.measures).items()}
+    measures = {name: finite(value) for name, value in asdict(contour.measures).items()}
     return {
         "source": [(segment * scale).tolist() for segment in contour.source.segments()],
         "points": (contour.polygon * scale).tolist(),
@@ -84,7 +84,7 @@ def _spline(spline: Spline, scale: float) -> dict[str, Any]:
     }
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """A measure as a plain value of Python; None if it is not finite."""
     if value is None or isinstance(value, bool):
         return value

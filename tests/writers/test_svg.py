@@ -22,7 +22,7 @@ from glyphspline.fitting.results import end_to_end
 from glyphspline.outlines.outline import Contours
 from glyphspline.types import FloatArray
 from glyphspline.writers.settings import VIEW_BOXES, ViewBox
-from glyphspline.writers.svg.document import number, to_polygon_svg, to_svg
+from glyphspline.writers.svg.document import number, polygon_document, to_svg
 from glyphspline.writers.svg.path_data import curves_data, polyline_data
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 
@@ -221,7 +221,7 @@ def test_ink_bounds_are_tight(seed: int) -> None:
 
 def test_hostile_names_stay_text() -> None:
     glyph = result(polygon_contour(L_SHAPE), name=HOSTILE, unicodes=(0x41, 0x1F600))
-    for svg in (to_svg(glyph), to_polygon_svg(glyph)):
+    for svg in (to_svg(glyph), polygon_document(glyph).decode()):
         root = ElementTree.fromstring(svg)
         assert not root.findall(f".//{SVG}script")
         clean = HOSTILE.replace("\x00", "\ufffd").replace("\x1b", "\ufffd").replace("\ud800", "\ufffd")
@@ -246,7 +246,7 @@ def test_identity_and_metrics_can_be_recovered() -> None:
 
 def test_ids_of_different_glyphs_do_not_meet() -> None:
     def ids(glyph: gs.GlyphResult) -> set[str]:
-        svgs = (to_svg(glyph), to_polygon_svg(glyph))
+        svgs = (to_svg(glyph), polygon_document(glyph).decode())
         found = [e.attrib["id"] for svg in svgs for e in ElementTree.fromstring(svg).iter() if "id" in e.attrib]
         assert len(found) == len(set(found)) > 0
         return set(found)
@@ -263,7 +263,7 @@ def test_empty_glyph_is_a_valid_drawing(choice: ViewBox) -> None:
 
 
 def test_polygon_drawing_has_outline_and_polygon() -> None:
-    root = ElementTree.fromstring(to_polygon_svg(result(polygon_contour(L_SHAPE))))
+    root = ElementTree.fromstring(polygon_document(result(polygon_contour(L_SHAPE))))
     groups = {group.attrib["id"]: group for group in root.findall(f"{SVG}g")}
     assert list(groups) == ["g36-A-source", "g36-A-polygon", "g36-A-control"]
     outline = parse_path(groups["g36-A-source"].findall(f"{SVG}path")[0].attrib["d"])

@@ -14,7 +14,7 @@ from ...checks.kinks import Source as VariableSource
 from ...fitting.convert_masters import MastersResult
 from ...fitting.results import as_glyph
 from ...outlines.masters import Masters
-from ...types import FloatArray, rounded_up
+from ...types import FloatArray, rounded_up, shortened
 from ..settings import FigureKind
 from ..svg.comb import LONGEST, SOURCE, TOOTH, Teeth, teeth
 from .atlas import OUTLINE, colour_legend, headed, label
@@ -110,9 +110,7 @@ def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], sc
 def failures_page(failed: Sequence[tuple[str, str]], heading: str) -> Any:
     """The names of glyphs without a result, with the reasons, as a matplotlib figure."""
     figure = headed(f"{heading}: without a result", "", PAGE)
-    lines = [f"{name}: {reason}"[:180] for name, reason in failed[:LISTED]]
-    if len(failed) > LISTED:
-        lines.append(f"and {len(failed) - LISTED} more")
+    lines = shortened([f"{name}: {reason}"[:180] for name, reason in failed], LISTED)
     figure.text(0.05, 0.93, ascii_text("\n".join(lines)), fontsize=7, va="top", parse_math=False)
     return figure
 

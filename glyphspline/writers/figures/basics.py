@@ -102,7 +102,7 @@ def comb_patches(drawn: Iterable[Teeth], *, closed: bool = True, width: float = 
         if len(some):
             path = Path(some.reshape(-1, 2), np.tile([Path.MOVETO, Path.LINETO], len(some)))
             patches.append(PathPatch(path, facecolor="none", edgecolor=colour, linewidth=width))
-    tips = [np.concatenate([t.tips, t.tips[:1]]) if closed else t.tips for t in parts]
+    tips = [ring(t.tips) if closed else t.tips for t in parts]
     codes = [code for part in tips for code in (Path.MOVETO, *[Path.LINETO] * (len(part) - 1))]
     ends = Path(np.concatenate(tips), codes)
     return [*patches, PathPatch(ends, facecolor="none", edgecolor="black", alpha=0.4, linewidth=0.7 * width)]
@@ -114,3 +114,8 @@ def colour_bar(figure: Any, reach: float, **place: Any) -> Any:
     from matplotlib.colors import ListedColormap, Normalize
 
     return figure.colorbar(ScalarMappable(Normalize(-reach, reach), ListedColormap(palette())), **place)
+
+
+def ring(points: FloatArray) -> FloatArray:
+    """Points (n, 2), and the first one again."""
+    return np.concatenate([points, points[:1]])

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ...types import FloatArray
 from ..settings import CURRENT, PLAIN_MAPS, Combs, ImageKind, Maps, Settings
 from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, legend, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
-from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, saved
+from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, ring, saved
 
 SIZE = 6.0
 """Height in inches of a drawing that says none, and width and height of a map."""
@@ -79,7 +78,7 @@ def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices
     for part in drawn:
         _draw_teeth(axes, part)
     for part in teeth(glyph, scale, "source") if combs == "both" else ():
-        axes.plot(*_closed(part.tips).T, color=SOURCE, linewidth=0.6, linestyle=(0, (4, 2)))
+        axes.plot(*ring(part.tips).T, color=SOURCE, linewidth=0.6, linestyle=(0, (4, 2)))
     if vertices:
         for contour in glyph.contours:
             points = contour.polygon if whose == "result" else contour.source.points[contour.source.offsets]
@@ -107,9 +106,5 @@ def _draw_teeth(axes: Any, part: Teeth) -> None:
 
     colours = [palette()[index + SIDES] for index in colour_classes(part.relative).tolist()]
     axes.add_collection(LineCollection(list(np.stack([part.feet, part.tips], axis=1)), colors=colours, linewidths=0.5))
-    axes.plot(*_closed(part.tips).T, color="black", alpha=0.45, linewidth=0.3)
+    axes.plot(*ring(part.tips).T, color="black", alpha=0.45, linewidth=0.3)
     axes.plot(*part.tips[part.cut].T, "k.", markersize=1)
-
-
-def _closed(points: FloatArray) -> FloatArray:
-    return np.concatenate([points, points[:1]])

@@ -143,18 +143,14 @@ def polygon_data(glyphs: Sequence[GlyphResult]) -> list[PolygonData]:
     return [PolygonData(*parts) for parts in zip(polygon, control, strict=True)]
 
 
-def to_polygon_svg(glyph: GlyphResult) -> str:
-    """The source outline, and over it the polygon with its vertices, as groups of one SVG document.
+def polygon_document(glyph: GlyphResult, source: PathData | None = None, data: PolygonData | None = None) -> bytes:
+    """The source outline, and over it the polygon with its vertices, as groups of one SVG document in UTF-8.
 
     Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. As an image with the fragment of the first, as in
     ``a.svg#g36-A-source``, the drawing has no polygon. A third group, ``…-control``, holds the control
-    polygons of the result; it is not displayed.
+    polygons of the result; it is not displayed. ``source`` and ``data`` are the path data, if they are known.
     """
-    return polygon_document(glyph, source_data([glyph])[0], polygon_data([glyph])[0]).decode()
-
-
-def polygon_document(glyph: GlyphResult, source: PathData, data: PolygonData) -> bytes:
-    """The document of :func:`to_polygon_svg` in UTF-8, from its path data."""
+    source, data = source or source_data([glyph])[0], data or polygon_data([glyph])[0]
     outline, precision = glyph.outline, glyph.options.precision
     em = outline.metrics.units_per_em
     box = union(em_box(outline), source.box)
