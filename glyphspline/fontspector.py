@@ -1,8 +1,9 @@
 """A plug-in of fontspector, which gives what ``glyphspline check`` finds in its report.
 
-fontspector runs ``glyphspline-fontspector --metadata`` for the profile ``glyphspline`` and its check, and
-``glyphspline-fontspector --check glyphspline/outlines FONT`` for the findings in a font, as JSON. Thresholds, kinds and
-baseline are those of ``[tool.glyphspline.check]`` in the ``pyproject.toml`` of the working folder.
+fontspector runs ``glyphspline-fontspector --metadata`` for the profile ``glyphspline`` and its checks, and
+``glyphspline-fontspector --check glyphspline/outlines FONT`` for the findings in a font, as JSON. A check is of one type
+of files, so sources have checks of their own. Thresholds, kinds and baseline are those of ``[tool.glyphspline.check]``
+in the ``pyproject.toml`` of the working folder.
 """
 
 from __future__ import annotations
@@ -22,6 +23,10 @@ from .types import shortened
 
 PROFILE = "glyphspline"
 CHECK = "glyphspline/outlines"
+
+SOURCES = {"UFO": "metainfo.plist", "DESIGNSPACE": "*.designspace", "GLYPHS": "*.glyphs"}
+"""Types of source files, which fontspector does not know by itself, and the names of such files. fontspector reads all
+files that it is given, and no folders: a UFO is given by the file that makes its folder one."""
 
 LISTED = 10
 """Findings of a kind that are named in a message, as in fontspector's own; its ``metadata`` has all."""
@@ -50,21 +55,34 @@ def main() -> int:
 
 
 def register(plugin: Any) -> None:
-    """Register the check and the profile with fontspector's plug-in."""
+    """Register the checks and the profile with fontspector's plug-in."""
     api = need("fontspector")
     title = "Are outlines free of kinks, curvature jumps and other faults?"
-    decorated = api.check(id=CHECK, title=title, rationale=RATIONALE, applies_to="TTF")(outlines)
-    plugin.register_simple_profile(PROFILE, [decorated], "Outlines")
+    for kind, pattern in SOURCES.items():
+        plugin.register_filetype(kind, pattern)
+    checks = []
+    for kind in ("TTF", *SOURCES):
+
+        def of_kind(font: Path) -> Iterator[Any]:
+            return outlines(font)
+
+        checks.append(api.check(id=check_of(kind), title=title, rationale=RATIONALE, applies_to=kind)(of_kind))
+    plugin.register_simple_profile(PROFILE, checks, "Outlines")
+
+
+def check_of(kind: str) -> str:
+    """The name of the check of a type of files."""
+    return CHECK if kind == "TTF" else f"{CHECK}/{kind.lower()}"
 
 
 def outlines(font: Path) -> Iterator[Any]:
-    """The statuses of a font, a message for each kind of finding; PASS without any.
+    """The statuses of a font or source, a message for each kind of finding; PASS without any.
 
     Raises:
         GlyphsplineError: the font cannot be read; fontspector reports an ERROR.
     """
     api = need("fontspector")
-    found, failed = found_in(font)
+    found, failed = found_in(font.parent if font.name == SOURCES["UFO"] else font)
     for kind, same in groupby(sorted(found, key=severity), key=lambda finding: finding.kind):
         findings = list(same)
         words = [

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from glyphspline.cli import app
 from glyphspline.extras import has
-from glyphspline.fontspector import CHECK, LISTED, PROFILE
+from glyphspline.fontspector import CHECK, LISTED, PROFILE, SOURCES
 from tests.places import ROOT
 
 FONT = ROOT / "fonts_test" / "kouzan-gyosho.otf"
@@ -30,12 +30,12 @@ def called(*arguments: str | Path, place: Path = ROOT, code: str = CALL) -> subp
     return subprocess.run(command, cwd=place, env=environment, capture_output=True, text=True, check=False)
 
 
-def checked(font: Path, place: Path) -> dict[str, Any]:
-    run = called("--check", CHECK, font, place=place)
+def checked(font: Path, place: Path, check: str = CHECK) -> dict[str, Any]:
+    run = called("--check", check, font, place=place)
     assert run.returncode == 0, run.stderr
     result: dict[str, Any] = json.loads(run.stdout)  # nothing else may be on standard output
     assert {"check_id", "check_name", "check_rationale", "filename", "subresults"} <= result.keys()
-    assert (result["check_id"], result["filename"]) == (CHECK, str(font))
+    assert (result["check_id"], result["filename"]) == (check, str(font))
     assert (result["hotfix_available"], result["sourcefix_available"]) == (False, False)
     for status in result["subresults"]:
         assert status["severity"] in SEVERITIES
@@ -51,13 +51,15 @@ def test_it_tells_of_a_profile_and_its_check(words: list[str], tmp_path: Path) -
     assert run.returncode == 0, run.stderr
     data = json.loads(run.stdout)
     assert (data["api_version"], data["plugin_name"]) == (1, "glyphspline")
-    assert data["profiles"][PROFILE]["sections"] == {"Outlines": [CHECK]}
-    (check,) = data["checks"]
-    assert check.keys() == {
-        "id", "title", "rationale", "proposal", "applies_to", "runs_on_collection", "metadata", "hotfix_available",
-        "sourcefix_available",
-    }  # fmt: skip
-    assert (check["id"], check["applies_to"], check["runs_on_collection"]) == (CHECK, "TTF", False)
+    names = [CHECK, *(f"{CHECK}/{kind}" for kind in ("ufo", "designspace", "glyphs"))]
+    assert data["profiles"][PROFILE]["sections"] == {"Outlines": names}
+    assert data["filetypes"] == SOURCES
+    for check, name, kind in zip(data["checks"], names, ("TTF", *SOURCES), strict=True):
+        assert check.keys() == {
+            "id", "title", "rationale", "proposal", "applies_to", "runs_on_collection", "metadata", "hotfix_available",
+            "sourcefix_available",
+        }  # fmt: skip
+        assert (check["id"], check["applies_to"], check["runs_on_collection"]) == (name, kind, False)
 
 
 @needs_api
@@ -96,6 +98,29 @@ def test_its_report_has_what_the_command_finds(tmp_path: Path) -> None:
     assert (result["worst_status"], kinks["code"]) == ("WARN", "kink")
     assert kinks["message"].count("\n* ") == LISTED + 1
     assert kinks["message"].endswith(f"* and {len(kinks['metadata']) - LISTED} more")
+
+
+@needs_api
+def test_sources_have_checks_of_their_own(tmp_path: Path) -> None:
+    ufoLib2 = pytest.importorskip("ufoLib2")
+    from fontTools.designspaceLib import DesignSpaceDocument
+
+    document = DesignSpaceDocument()
+    document.addAxisDescriptor(tag="wght", name="Weight", minimum=400, default=400, maximum=700)
+    for weight, height in ((400, 300), (700, 340)):
+        font = ufoLib2.Font()
+        font.info.familyName, font.info.styleName, font.info.unitsPerEm = "Mine", str(weight), 1000
+        pen = font.newGlyph("n").getPen()
+        pen.moveTo((0, 0))
+        for point in ((0, height), (400, height), (400, 1)):  # the lower line is slanted
+            pen.lineTo(point)
+        pen.closePath()
+        font.save(tmp_path / f"{weight}.ufo")
+        document.addSourceDescriptor(path=str(tmp_path / f"{weight}.ufo"), location={"Weight": weight})
+    document.write(tmp_path / "Mine.designspace")
+    for file, kind in (("400.ufo/metainfo.plist", "ufo"), ("Mine.designspace", "designspace")):
+        result = checked(tmp_path / file, tmp_path, f"{CHECK}/{kind}")
+        assert "slanted" in [status["code"] for status in result["subresults"]]
 
 
 @needs_api
