@@ -1,9 +1,9 @@
 """A plug-in of fontspector, which gives what ``glyphspline check`` finds in its report.
 
 fontspector runs ``glyphspline-fontspector --metadata`` for the profile ``glyphspline`` and its checks, and
-``glyphspline-fontspector --check glyphspline/outlines FONT`` for the findings in a font, as JSON. A check is of one type
-of files, so sources have checks of their own. Thresholds, kinds and baseline are those of ``[tool.glyphspline.check]``
-in the ``pyproject.toml`` of the working folder.
+``glyphspline-fontspector --check glyphspline/outlines FONT`` for the findings in a font, as JSON. A check is of one
+type of files, so sources have checks of their own. Thresholds, kinds and baseline are those of
+``[tool.glyphspline.check]`` in the ``pyproject.toml`` of the working folder.
 """
 
 from __future__ import annotations

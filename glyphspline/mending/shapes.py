@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from ..outlines.masters import MasterContour
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 
 Move = tuple[IntArray, FloatArray]
 
@@ -25,6 +25,9 @@ SHARES = (0.5, 0.0, 1.0)
 
 WITHIN = (1.0, 0.97, 0.93, 0.85)
 """Shares of the length at which handles meet, to which longer ones are cut: on the grid, one may still be too long."""
+
+ROUND = 0.5523
+"""The share of a quarter of a circle, for two handles that are both too long."""
 
 OUT = (1.0, 0.5, 0.0)
 """How far a point goes out to the extremum beside it: all of the way, half of it, or only its handles are levelled."""
@@ -124,7 +127,10 @@ def extremum_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
 
 
 def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
-    """Handles cut to where both meet, or to where they pass the other end; in masters where they do not they stay."""
+    """Handles cut to the other one's share of the way to where both meet; or to that place, or to the other end.
+
+    In masters where they do not reach as far they stay.
+    """
     if contour.degrees[segment] != 3:
         return
     count = contour.points.shape[1]
@@ -138,15 +144,23 @@ def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
         meets = (meets / cross).T
         size = (chord * chord).sum(axis=1)
         ends = np.stack([size / (u * chord).sum(axis=1), -size / (v * chord).sum(axis=1)], axis=1)
-    both = np.isfinite(meets).all(axis=1) & (meets > 0).all(axis=1)
+    both: BoolArray = np.isfinite(meets).all(axis=1) & (meets > 0).all(axis=1)
     shares[both] = np.minimum(shares[both], meets[both])
+    if both.any():
+        own = np.where(both[:, None], 1 / meets, 1.0)
+        other = np.where(own[:, ::-1] < 1, own[:, ::-1], ROUND)
+        yield numbers[1:3], cut(points, np.where(own > 1, other / own, 1.0))
     shares = np.where((ends > 0) & (ends < shares), ends, shares)
     if (shares >= 1).all():
         return
     for within in WITHIN:
-        own = np.where(shares < 1, within * shares, 1.0)
-        places = np.stack([points[:, 0] + own[:, :1] * u, points[:, 3] + own[:, 1:] * v], axis=1)
-        yield numbers[1:3], places
+        yield numbers[1:3], cut(points, np.where(shares < 1, within * shares, 1.0))
+
+
+def cut(points: FloatArray, shares: FloatArray) -> FloatArray:
+    """(K, 2, 2) the ends of the handles of cubics (K, 4, 2), cut to shares (K, 2) of their lengths."""
+    ends = points[:, [0, 3]]
+    return ends + shares[:, :, None] * (points[:, [1, 2]] - ends)
 
 
 MOVED: dict[str, Callable[[MasterContour, int], Iterator[Move]]] = {
