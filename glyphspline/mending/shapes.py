@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 
 from ..outlines.masters import MasterContour
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import FloatArray, IntArray
 
 Move = tuple[IntArray, FloatArray]
 
@@ -144,7 +144,7 @@ def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
         meets = (meets / cross).T
         size = (chord * chord).sum(axis=1)
         ends = np.stack([size / (u * chord).sum(axis=1), -size / (v * chord).sum(axis=1)], axis=1)
-    both: BoolArray = np.isfinite(meets).all(axis=1) & (meets > 0).all(axis=1)
+    both = np.asarray(np.isfinite(meets).all(axis=1) & (meets > 0).all(axis=1))
     shares[both] = np.minimum(shares[both], meets[both])
     if both.any():
         own = np.where(both[:, None], 1 / meets, 1.0)
