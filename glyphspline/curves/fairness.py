@@ -49,16 +49,22 @@ def curvature_extrema(cubics: FloatArray, length: float, corner: float) -> int:
         cubics: (m, 4, 2). length: of the contour. corner: cosine of the turn from which a joint is a corner.
     """
     values, _, n = curvatures(cubics, length, corner)
+    return extrema_of(values, n, TURN / length)
+
+
+@compiled
+def extrema_of(values: FloatArray, n: int, least: float) -> int:
+    """Number of significant extrema among n curvatures in order, NaN at corners; ``least`` is their absolute part."""
     if n == 0:
         return 0
     start = first_of(values, n)
     found = np.empty(n + 1, dtype=np.int64)
     if not np.isnan(values[start]):
-        return swings(values, n, start, start + n + 1, 1.0, SHARE, TURN / length, found)
+        return swings(values, n, start, start + n + 1, 1.0, SHARE, least, found)
     count, first = 0, start + 1
     for i in range(start + 1, start + n + 1):
         if np.isnan(values[i % n]):
-            count += max(swings(values, n, first, i, 1.0, SHARE, TURN / length, found) - 1, 0)
+            count += max(swings(values, n, first, i, 1.0, SHARE, least, found) - 1, 0)
             first = i + 1
     return count
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import turns
-from ..curves.fairness import curvature_extrema
+from ..curves.fairness import TURN, curvature_extrema, curvatures, extrema_of
 from ..curves.integrals import area, integrals
 from ..curves.overshoot import overshoot
 from ..errors import GlyphsplineError
@@ -23,9 +23,8 @@ from ..types import FloatArray, IntArray
 from .options import Options
 from .results import ConvertedContours
 
-CORNER_TURN = float(np.radians(CORNER_ANGLE))
-CORNER = float(np.cos(CORNER_TURN))
-"""The turn, and its cosine, from which a joint is a corner and has no curvature, whatever the angle of a fit."""
+CORNER = float(np.cos(np.radians(CORNER_ANGLE)))
+"""Cosine of the turn from which a joint is a corner and has no curvature, whatever the angle of a fit."""
 
 Columns = dict[str, Sequence[Any]]
 """For each measure, its value for each contour."""
@@ -128,13 +127,16 @@ def geometry(
 
 @compiled
 def extrema_floor(given: FloatArray, length: float) -> tuple[int, int]:
-    """Extrema of curvature of a contour (m, 4, 2) of a length, and the fewest of a C2 curve near it."""
-    extrema, bends = curvature_extrema(given, length, CORNER), turns(given, 0.0)
-    corners = bends[np.abs(bends) >= CORNER_TURN]
-    floor = extrema + len(corners)
-    for k in range(len(corners) if len(corners) > 1 else 0):
-        floor += corners[k] * corners[k - 1] > 0
-    return extrema, floor
+    """Extrema of curvature of a contour (m, 4, 2) of a length; and with its corners rounded, as tightly as can be.
+
+    Each corner is then a peak above all others. Curvature goes from peak to peak through that of the sides.
+    """
+    values, where, n = curvatures(given, length, CORNER)
+    extrema, bends = extrema_of(values, n, TURN / length), turns(given, 0.0)
+    for i in range(n):
+        if np.isnan(values[i]):
+            values[i] = np.copysign(np.inf, bends[int(where[i])])
+    return extrema, extrema_of(values, n, TURN / length)
 
 
 @compiled

@@ -67,9 +67,10 @@ class Measures:
             one or more. See :func:`..curves.fairness.curvature_extrema`.
         source_curvature_extrema: the same of the source contour. Sources of quadratics have many: each quadratic has a
             peak of curvature of its own.
-        curvature_extrema_floor: the fewest that a C2 curve within a small distance can be expected to have: those of
-            the source between corners, one for each corner that is rounded, and one between two neighbouring corners
-            that turn the same way. None in "sharp", where corners stay.
+        curvature_extrema_floor: those of the source if each corner is rounded as tightly as can be, to a peak of
+            curvature above all others: one for each corner, one between two corners that turn the same way, and what
+            the curvature of the sides adds. A curve within the tolerance may have fewer. None in "sharp", where corners
+            stay.
         new_crossings: crossings of the contour, with itself and with others of the glyph, beyond those of the source. A
             crossing of two contours counts for both.
         collapsed: whether the written contour has less than a quarter of the source's area, or runs the other way
@@ -101,7 +102,7 @@ class Measures:
     curvature_extrema: int | None = _about("where curvature peaks between corners; an ellipse has 4")
     source_curvature_extrema: int | None = _about("the same of the source outline", label="curvature extrema, source")
     curvature_extrema_floor: int | None = _about(
-        "the source's, one a rounded corner, and one between two corners that turn alike",
+        "those of the source with each corner rounded to a peak",
         label="curvature extrema, floor",
     )
     new_crossings: int | None = _about("crossings of contours, with themselves and others, beyond the source's")

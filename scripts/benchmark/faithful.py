@@ -43,8 +43,8 @@ class Face:
     name: str
     pattern: str
     latin: bool
-    segments: tuple[float, float]
-    numbers: tuple[float, float]
+    segments: tuple[float, float] = (1.0, 1.0)
+    numbers: tuple[float, float] = (1.0, 1.0)
 
 
 FACES = (

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import glyphspline as gs
 from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvature, split
 from glyphspline.curves.fairness import SHARE, TURN, curvature_extrema
-from glyphspline.fitting.measures import CORNER
+from glyphspline.fitting.measures import CORNER, extrema_floor
 from glyphspline.types import FloatArray
 from scripts.paper.measures import curvature_variation, shape
 from tests.drawings import circle, polygon_contour
@@ -110,6 +110,17 @@ def test_an_s_counts_on_both_sides() -> None:
     other = spine[::-1, ::-1] + [30.0, 0]
     ends = line(spine[-1, 3], other[0, 0]), line(other[-1, 3], spine[0, 0])
     assert extrema(np.array([*spine, ends[0], *other, ends[1]])) == 4
+
+
+def test_rounded_corners_are_peaks_and_curvature_returns_beside_them() -> None:
+    assert extrema_floor(square_contour().cubics(), 400.0)[1] == 8
+    assert extrema_floor(circle(100.0), 600.0)[1] == 0
+    quarter = circle(100.0, 4)[0] * [2, 1]  # from its sharp end, behind a corner that turns right, to its flat one
+    falls = np.array([quarter, line((0, 100), (0, -30)), line((0, -30), (300, -30)), line((300, -30), (200, 0))])
+    assert extrema_floor(falls, shape(falls).length) == (0, 8)
+    quarter = circle(100.0, 4)[0] * [1, 2]  # from its flat end to its sharp one, as the corners have it
+    rises = np.array([quarter, line((0, 200), (0, -30)), line((0, -30), (200, -30)), line((200, -30), (100, 0))])
+    assert extrema_floor(rises, shape(rises).length) == (0, 6)
 
 
 def test_the_corner_angle_decides_what_is_a_corner() -> None:

@@ -18,10 +18,10 @@ from ...types import BoolArray, FloatArray, IntArray
 from ..measures import CORNER, extrema_floor
 from .canonical_contours import CanonicalContours, table_of
 
-SAMPLES, TUBE = 3, 1
-"""Samples of curvature in a span, and every how many of them the distance is limited."""
+SAMPLES = 3
+"""Samples of curvature and distance in a span."""
 
-STEPS = 4
+STEPS = 6
 """Newton steps."""
 
 SMALL = 0.02
@@ -33,7 +33,7 @@ FLAT = 10 * TURN
 STRAIGHT = 0.1 * TURN
 """Over the length of the contour, the curvature up to which a span is straight."""
 
-BARRIER, WEAKER = 0.1, 0.7
+BARRIER, WEAKER = 0.1, 0.5
 """The barrier's first weight, and its share from step to step."""
 
 LIMIT, CUT = 0.8, 0.8
@@ -157,16 +157,20 @@ def _fair(
             speed = np.sqrt(dx * dx + dy * dy)
             normals[i + 1, 0], normals[i + 1, 1] = -dy / speed, dx / speed
     normals[0], normals[n + 1], normals[n + 2] = normals[n], normals[1], normals[2]  # row c of span j is j + c
+    # Spans that move, and those whose first sample is compared with the last one of a span that does.
+    moving = np.empty(n, dtype=np.bool_)
+    for j in range(n):
+        moving[j] = np.abs(normals[j : j + 4]).max() > 0
     # Each sample's derivatives, those of these by the four control points, and the same of its distance.
     jets, first, second = np.empty((m, 4)), np.empty((m, 4, 2)), np.empty((m, 4, 2))
     away, most, slopes = np.empty(m), np.empty(m), np.empty((m, 4))
     for j in range(n):
-        for k in range(SAMPLES):
+        for k in range(SAMPLES if moving[j] else 1):
             s, x = j * SAMPLES + k, k / SAMPLES
             px, py, dx, dy, bx, by = jet(pieces, j, x)
             jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3] = dx, dy, bx, by
             ex = ey = 0.0
-            if k % TUBE == 0:
+            if moving[j]:
                 away[s], ex, ey = _distance(outline, pieces, j, x, ends, px, py, dx, dy)
                 most[s] = max(limits[j], 1.02 * abs(away[s]) + 1e-9)
             for c in range(4):
@@ -177,13 +181,15 @@ def _fair(
                 slopes[s, c] = value * (nx * ex + ny * ey)
     moves, delta, weight = np.zeros(n + 3), np.zeros(n + 3), BARRIER
     for _ in range(STEPS):
-        band, right = _equations(jets, first, second, away, most, slopes, FLAT / length, weight)
+        band, right = _equations(jets, first, second, away, most, slopes, moving, FLAT / length, weight)
         _solve(band, right)
         for c in range(n + 3):
             delta[c] = right[_folded((c - 1) % n, n)]
         share = 1.0
-        for s in range(0, m, TUBE):
+        for s in range(m):
             j, move = s // SAMPLES, 0.0
+            if not moving[j]:
+                continue
             for c in range(4):
                 move += slopes[s, c] * delta[j + c]
             room = most[s] - away[s] if move > 0 else most[s] + away[s]
@@ -194,14 +200,13 @@ def _fair(
             moves[c] += delta[c]
         for s in range(m):
             j = s // SAMPLES
-            for c in range(4):
+            for c in range(4 if moving[j] or s % SAMPLES == 0 else 0):
                 d = delta[j + c]
                 jets[s, 0] += d * first[s, c, 0]
                 jets[s, 1] += d * first[s, c, 1]
                 jets[s, 2] += d * second[s, c, 0]
                 jets[s, 3] += d * second[s, c, 1]
-                if s % TUBE == 0:
-                    away[s] += d * slopes[s, c]
+                away[s] += d * slopes[s, c]
         weight *= WEAKER
     for i in range(n):
         if not held[i]:
@@ -237,13 +242,15 @@ def _distance(
 @compiled
 def _equations(
     jets: FloatArray, first: FloatArray, second: FloatArray, away: FloatArray, most: FloatArray, slopes: FloatArray,
-    flat: float, weight: float,
+    moving: BoolArray, flat: float, weight: float,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """The matrix of a Newton step, its lower band in the order of :func:`_folded`, and the right side."""
     m = len(jets)
     n = m // SAMPLES
     kappa, by = np.empty(m), np.empty((m, 4))
     for s in range(m):
+        if not moving[s // SAMPLES] and s % SAMPLES > 0:
+            continue
         dx, dy, ax, ay = jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3]
         square = dx * dx + dy * dy
         cube = 1.0 / (square * np.sqrt(square))
@@ -255,7 +262,7 @@ def _equations(
     cyclic, right = np.zeros((n + 4, 5)), np.zeros(n + 4)  # row i of control point i - 1, and entries to the right
     row = np.empty(5)
     for j in range(n):
-        for k in range(SAMPLES):
+        for k in range(SAMPLES if moving[j] else 0):
             s = j * SAMPLES + k
             after = s + 1 if s + 1 < m else 0
             scale = 1.0 / max(max(abs(kappa[s]), abs(kappa[after])), flat)
@@ -270,14 +277,13 @@ def _equations(
                 right[j + a] -= w * change * row[a]
                 for b in range(a, 5):
                     cyclic[j + a, b - a] += w * row[a] * row[b]
-            if k % TUBE == 0:
-                z, unit = away[s] / most[s], 1.0 / most[s]
-                inside = 1 / (1 - z * z)
-                slope, bend = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
-                for a in range(4):
-                    right[j + a] -= slope * slopes[s, a]
-                    for b in range(a, 4):
-                        cyclic[j + a, b - a] += bend * slopes[s, a] * slopes[s, b]
+            z, unit = away[s] / most[s], 1.0 / most[s]
+            inside = 1 / (1 - z * z)
+            slope, bend = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
+            for a in range(4):
+                right[j + a] -= slope * slopes[s, a]
+                for b in range(a, 4):
+                    cyclic[j + a, b - a] += bend * slopes[s, a] * slopes[s, b]
     band, folded = np.zeros((n, BAND + 1)), np.zeros(n)
     for j in range(n + 4):
         i = _folded((j - 1) % n, n)
@@ -305,8 +311,7 @@ def _solve(band: FloatArray, x: FloatArray) -> None:
         for j in range(first, i + 1):
             v = band[i, i - j]
             for k in range(first, j):
-                if j - k <= BAND:
-                    v -= band[i, i - k] * band[j, j - k]
+                v -= band[i, i - k] * band[j, j - k]
             band[i, i - j] = v / band[j, 0] if j < i else np.sqrt(max(v, 1e-300))
         for k in range(first, i):
             x[i] -= band[i, i - k] * x[k]
