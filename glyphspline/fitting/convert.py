@@ -181,7 +181,7 @@ def _convert_contours(
     from .faithful import Fits, faithful
     from .measures import check_coordinates
 
-    check_coordinates(contours)
+    check_coordinates(contours, np.inf if options.is_fixed else tolerance)
     if options.is_fixed and not options.measure:
         return convert_fixed(contours, options, tolerance)
     if options.is_fixed:

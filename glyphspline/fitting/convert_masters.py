@@ -154,7 +154,7 @@ def convert_masters(masters: Masters, options: Options = DEFAULTS) -> MastersRes
     try:
         for k, arrays in enumerate(outlines):
             try:
-                check_coordinates(arrays)
+                check_coordinates(arrays, options.tolerance_for(masters.metrics.units_per_em))
             except GlyphsplineError as error:
                 where = None if error.contour is None else kept[error.contour]
                 raise GlyphsplineError(f"master {k}: {error.message}", contour=where) from None

@@ -13,6 +13,7 @@ from ..curves.cubics import turns
 from ..curves.fairness import TURN, curvature_extrema, curvatures, extrema_of
 from ..curves.integrals import area, integrals
 from ..curves.overshoot import overshoot
+from ..curves.pairing import ROUNDING
 from ..errors import GlyphsplineError
 from ..interpolation.polygon import LARGEST, clean_polygon
 from ..interpolation.result import BatchedInterpolation
@@ -30,21 +31,26 @@ Columns = dict[str, Sequence[Any]]
 """For each measure, its value for each contour."""
 
 
-def check_coordinates(contours: ContourArrays) -> None:
-    """Refuse coordinates that are not finite, or too large.
+def check_coordinates(contours: ContourArrays, tolerance: float = np.inf) -> None:
+    """Refuse coordinates that are not finite, or too large for numbers, or for distances up to the tolerance.
 
     Raises:
         GlyphsplineError: its ``contour`` is the index.
     """
-    if len(contours.points) == 0 or np.abs(contours.points).max() < LARGEST / 4:
+    most = min(LARGEST / 4, tolerance / ROUNDING)
+    if len(contours.points) == 0 or np.abs(contours.points).max() < most:
         return
     for k in range(contours.num_contours):
         points = contours.points[contours.starts[k] : contours.starts[k + 1]]
-        if not np.abs(points).max() < LARGEST / 4:
+        if not (far := np.abs(points).max()) < most:
             try:
                 if not np.isfinite(points).all():
                     raise GlyphsplineError("the outline has a coordinate that is not finite")
                 clean_polygon(points)
+                if far < LARGEST / 4:
+                    raise GlyphsplineError(
+                        f"coordinates up to {far:.3g} are too large for a tolerance of {tolerance:g}"
+                    )
             except GlyphsplineError as error:
                 raise error.locate(contour=k) from None
 
