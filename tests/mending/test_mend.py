@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import subprocess
+import sys
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -20,6 +23,7 @@ from glyphspline.outlines.masters import DesignAxis, MasterContour
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_source
 from scripts.planted_faults import cubics_of, planted
+from tests.places import FONTS, ROOT
 
 SHAPE = [(0, 0), (0, 262), (161, 563), (300, 500), (424, 444), (600, 292), (600, 0)]
 BOLD = [(0, 0), (0, 202), (193, 460), (300, 500), (415, 543), (600, 276), (600, 0)]
@@ -239,6 +243,36 @@ def test_a_glyphs_file_is_mended(layer: str | None, tmp_path: Path) -> None:
     else:
         assert left
         assert layer in path.read_text()
+
+
+def test_check_and_mend_know_the_same_findings(tmp_path: Path) -> None:
+    path = sources(tmp_path)
+    known = ["check", str(path), "-j", "0", "-q", "-e", "WARN"]
+    run = CliRunner().invoke(app, [*known[:-2], "--json", "--write-baseline", str(tmp_path / "known.json")])
+    found = json.loads(run.stdout)["fonts"][0]["findings"]
+    run = CliRunner().invoke(app, ["mend", str(path), "--in-place", "-j", "1", "--json", "--tolerance", "5"])
+    (facts,) = json.loads(run.stdout)
+    keys = [
+        {tuple(one[key] for key in ("glyph", "kind", "contour", "segment")) for one in each if one["kind"] == "kink"}
+        for each in (found, facts["changes"])
+    ]
+    assert keys[0] == keys[1] != set()
+    run = CliRunner().invoke(app, [*known, "--baseline", str(tmp_path / "known.json")])
+    assert run.exit_code == 0, run.output
+    run = CliRunner().invoke(app, known)
+    assert run.exit_code == 0, run.output
+
+
+def test_the_script_of_the_docs_lists_what_would_be_mended() -> None:
+    script = ROOT / "docs" / "examples" / "mend.py"
+    command = [sys.executable, str(script), str(ROOT / "fonts_test" / "variable.ttf"), str(FONTS / "kouzan-gyosho.otf")]
+    run = subprocess.run(
+        command, capture_output=True, text=True, check=True, env=os.environ | {"PYTHONPATH": str(ROOT)}
+    )
+    lines = run.stdout.splitlines()
+    assert len(lines) > 20
+    assert all(line.count("|") == 8 for line in lines)
+    assert "# /// script" in script.read_text()
 
 
 def test_points_go_from_a_ufo_and_all_else_stays(tmp_path: Path) -> None:
