@@ -47,7 +47,7 @@ def check_coordinates(contours: ContourArrays, tolerance: float = np.inf) -> Non
                 if not np.isfinite(points).all():
                     raise GlyphsplineError("the outline has a coordinate that is not finite")
                 clean_polygon(points)
-                if far < LARGEST / 4:
+                if tolerance < np.inf:
                     raise GlyphsplineError(
                         f"coordinates up to {far:.3g} are too large for a tolerance of {tolerance:g}"
                     )
