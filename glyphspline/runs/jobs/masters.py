@@ -310,5 +310,6 @@ def _write_fonts(
         summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")
         stays |= left
     if stays:
-        summary.remarks.append(f"as they were: {listed([*stays][:NAMED], len(stays))}; the manifest says why")
+        named = listed([*stays][:NAMED], len(stays))
+        summary.remarks.append(f"{counted(len(stays), 'glyph')} as it was: {named}; the manifest says why")
     return stays, stored
