@@ -119,7 +119,7 @@ def lowered(
 def faired(
     contours: CanonicalContours, which: IntArray, offsets: IntArray, places: FloatArray, points: FloatArray,
     ends: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
-    limits: FloatArray, some: BoolArray,
+    limits: FloatArray, near: float, some: BoolArray,
 ) -> FloatArray:  # fmt: skip
     """New vertices (n, 2) of the contours that are among ``some``; those of held control points stay.
 
@@ -127,6 +127,7 @@ def faired(
         which: (k,) contours, with ragged vertices: places on the outline, points, ends of spans on it (see
             :class:`.steps.Trial`), Bézier pieces, knots, footpoints' parameters, and whether they are held.
         limits: (n,) largest distance of samples of each span from the outline; 0 where nothing moves.
+        near: the distance allowed, in font units.
     """
     moved = points.copy()
     for i in range(len(which)):
@@ -134,7 +135,7 @@ def faired(
         if some[i]:
             _fair(
                 contours.cubics[contours.offsets[k] : contours.offsets[k + 1]], pieces[a:b], knots[a + i : b + i + 1],
-                parameters[a:b], held[a:b], ends[a + i : b + i + 1], limits[a:b], moved[a:b],
+                parameters[a:b], held[a:b], ends[a + i : b + i + 1], limits[a:b], near, moved[a:b],
             )  # fmt: skip
     return moved
 
@@ -142,7 +143,7 @@ def faired(
 @compiled
 def _fair(
     outline: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
-    ends: FloatArray, limits: FloatArray, points: FloatArray,
+    ends: FloatArray, limits: FloatArray, near: float, points: FloatArray,
 ) -> None:  # fmt: skip
     """Write the new vertices of one contour."""
     n = len(pieces)
@@ -171,8 +172,8 @@ def _fair(
             jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3] = dx, dy, bx, by
             ex = ey = 0.0
             if moving[j]:
-                away[s], ex, ey = _distance(outline, pieces, j, x, ends, px, py, dx, dy)
-                most[s] = max(limits[j], 1.02 * abs(away[s]) + 1e-9)
+                away[s], ex, ey = _distance(outline, pieces, j, x, ends, near, px, py, dx, dy)
+                most[s] = max(limits[j], 1.02 * abs(away[s]) + 1e-9 * near)
             for c in range(4):
                 value, slope, bend = _cubic(basis, j, c, x)
                 nx, ny = normals[j + c, 0], normals[j + c, 1]
@@ -181,7 +182,7 @@ def _fair(
                 slopes[s, c] = value * (nx * ex + ny * ey)
     moves, delta, weight = np.zeros(n + 3), np.zeros(n + 3), BARRIER
     for _ in range(STEPS):
-        band, right = _equations(jets, first, second, away, most, slopes, moving, FLAT / length, weight)
+        band, right = _equations(jets, first, second, away, most, slopes, moving, FLAT / length, near, weight)
         _solve(band, right)
         for c in range(n + 3):
             delta[c] = right[_folded((c - 1) % n, n)]
@@ -220,8 +221,8 @@ def _fair(
 
 @compiled
 def _distance(
-    outline: FloatArray, pieces: FloatArray, j: int, x: float, ends: FloatArray, px: float, py: float, dx: float,
-    dy: float,
+    outline: FloatArray, pieces: FloatArray, j: int, x: float, ends: FloatArray, near: float, px: float, py: float,
+    dx: float, dy: float,
 ) -> tuple[float, float, float]:  # fmt: skip
     """Signed distance from the outline of a point of span j, at x, and the unit vector along which it grows."""
     place = ends[j]
@@ -233,7 +234,7 @@ def _distance(
     qx, qy, _, _, _, _ = jet(outline, s % len(outline), place - s)
     ex, ey, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)
     nx, ny, d = -dy / speed, dx / speed, np.sqrt(ex * ex + ey * ey)
-    if place == s and d > 0.02:  # a corner may be the nearest
+    if place == s and d > 0.02 * near:  # a corner may be the nearest
         sign = 1.0 if ex * nx + ey * ny >= 0 else -1.0
         nx, ny = sign * ex / d, sign * ey / d
     return ex * nx + ey * ny, nx, ny
@@ -242,7 +243,7 @@ def _distance(
 @compiled
 def _equations(
     jets: FloatArray, first: FloatArray, second: FloatArray, away: FloatArray, most: FloatArray, slopes: FloatArray,
-    moving: BoolArray, flat: float, weight: float,
+    moving: BoolArray, flat: float, near: float, weight: float,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """The matrix of a Newton step, its lower band in the order of :func:`_folded`, and the right side."""
     m = len(jets)
@@ -292,7 +293,7 @@ def _equations(
             k = _folded((j - 1 + a) % n, n)
             band[max(i, k), abs(i - k)] += cyclic[j, a]
     for i in range(n):
-        band[i, 0] += 1e-9 * band[i, 0] + 1e-3  # held points have nothing else
+        band[i, 0] += 1e-9 * band[i, 0] + 1e-3 / (near * near)  # held points have nothing else
     return band, folded
 
 

@@ -197,7 +197,7 @@ class _Search:
         for _ in range(fairing.TRIES):
             if not some.any():
                 break
-            points = fairing.faired(self.contours, which, *before, limits, some)
+            points = fairing.faired(self.contours, which, *before, limits, self.near, some)
             rows, left = np.repeat(some, np.diff(before.offsets)), np.flatnonzero(some)
             offsets = offsets_of(np.diff(before.offsets)[left])
             done = self.run(which[left], before.places[rows], offsets, points[rows])
