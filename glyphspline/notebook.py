@@ -33,9 +33,6 @@ SHOWN = (
 MARKS = {"vertices": ("#e80", 0.022), "knots": ("#0a7", 0.014), "footpoints": ("currentColor", 0.007)}
 """Colours of points on a curve, and their diameter as a share of its extent."""
 
-STRAIGHT = 0.02
-"""Share of the largest curvature below which torsion is not drawn: where a curve does not bend it is none."""
-
 REACH = 0.12
 """Length of a comb's tooth at the scale, as a share of the extent of a curve alone: there is room around it."""
 
@@ -155,7 +152,8 @@ def _space_svg(curve: Spline | Interpolation) -> str:
     drawn = [("|κ|", "tab:purple", bends)]
     if torsion:
         twists = np.concatenate([spline.torsion(inner), spline.torsion(last, side="left")], axis=1)
-        drawn.append(("torsion", "tab:blue", np.where(bends > STRAIGHT * bends.max(), twists, np.nan)))
+        # Share of the largest curvature below which torsion is not drawn: where a curve does not bend it is none.
+        drawn.append(("torsion", "tab:blue", np.where(bends > 0.02 * bends.max(), twists, np.nan)))
     for row, (name, colour, values) in enumerate(drawn):
         axes = figure.add_subplot(grid[row, 1])
         axes.plot(t.T, values.T, color=colour, linewidth=1)

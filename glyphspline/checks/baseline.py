@@ -15,9 +15,6 @@ from .finding import SMALLER_IS_WORSE, Finding, badness
 
 FORMAT = "glyphspline baseline 1"
 
-DIGITS = 3
-"""Significant digits of a value: a finding is worse only if these say so."""
-
 Key: TypeAlias = tuple[str, str, int, int]
 """Glyph, kind, contour, segment."""
 
@@ -92,7 +89,8 @@ def _by_key(findings: Iterable[Finding]) -> dict[Key, list[Finding]]:
 
 
 def _value(finding: Finding) -> float:
-    return float(f"{finding.value:.{DIGITS}g}")
+    # Significant digits of a value: a finding is worse only if these say so.
+    return float(f"{finding.value:.3g}")
 
 
 def _worst_first(key: Key, values: Iterable[float]) -> list[float]:

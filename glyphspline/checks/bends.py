@@ -21,9 +21,6 @@ SLACK = np.radians(10.0)
 APART = np.radians(45.0)
 """Turn between two maxima that both belong to the bend's shape: half a quarter."""
 
-WAVE = 8 * np.pi**2
-"""A wave of curvature moves the curve to each side by its height times the square of its length, divided by this."""
-
 STEPS = 8
 """Chords of a segment along which its turn is summed."""
 
@@ -114,7 +111,9 @@ def lumps_of(
         if sizes[k] > beside:
             s, r = min(int(at[i]), len(cubics) - 1), min(int(at[j]), len(cubics) - 1)
             (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = jet(cubics, s, at[i] - s), jet(cubics, r, at[j] - r)
-            height = (sizes[k] - beside) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / WAVE
+            # A wave of curvature moves the curve to each side by its height times the square of its length, divided by
+            # this.
+            height = (sizes[k] - beside) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / (8 * np.pi**2)
             if height >= least_height:
                 peaks[size, 0], peaks[size, 1], peaks[size, 2] = at[k], sizes[k] / max(beside, least) - 1, height
                 size += 1

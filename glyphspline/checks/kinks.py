@@ -25,9 +25,6 @@ from .finding import Measured
 from .kinds import KINK
 from .turns import NO_HANDLE, joint_controls, largest_jumps, largest_turns, turns_of
 
-PROFILE = 96
-"""Intervals of an axis, in user space, at whose ends the largest turn of all joints is kept."""
-
 
 class Source(Protocol):
     """What kinks are measured of: :class:`glyphspline.Font`, or any other source of a variable font."""
@@ -341,7 +338,8 @@ def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
 
 def grid_of(axis: DesignAxis) -> FloatArray:
     """Normalised values of an axis, even in user space, with those where its mapping bends."""
-    users = [*np.linspace(axis.minimum, axis.maximum, PROFILE + 1).tolist(), axis.default]
+    # Places along an axis, evenly in user space, at which the largest turn of all joints is kept.
+    users = [*np.linspace(axis.minimum, axis.maximum, 97).tolist(), axis.default]
     low, high = axis.normalised(axis.minimum), axis.normalised(axis.maximum)
     bends = [after for _, after in axis.mapping if low <= after <= high]
     return np.unique([*(axis.normalised(value) for value in users), *bends])

@@ -27,9 +27,6 @@ OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
 OF_SMOOTH = (JUMP, TURN)
 """Kinds that a joint has only if it is a corner in no master."""
 
-ALIKE = 9
-"""Decimals of values up to which two places are equally bad; then the first is reported."""
-
 
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
@@ -169,7 +166,8 @@ def _worst(rows: Measured) -> Measured:
     """Of each finding the row with the largest value; those of a kind together, the largest value first."""
     segments = np.where(np.isin(rows.kinds, OF_CONTOURS), 0, rows.segments)
     keys = np.column_stack([rows.glyphs, rows.kinds, rows.contours, segments, rows.numbers[:, 3].astype(np.int64)])
-    order = np.lexsort((-rows.numbers[:, 1].round(ALIKE), *keys.T[::-1]))  # stable: of equals, the first
+    # Decimals of values up to which two places are equally bad; then the first is reported.
+    order = np.lexsort((-rows.numbers[:, 1].round(9), *keys.T[::-1]))  # stable: of equals, the first
     _, first = np.unique(keys[order], axis=0, return_index=True)
     kept = rows.chosen(order[first])
     return kept.chosen(np.lexsort((-kept.numbers[:, 1], kept.kinds)))

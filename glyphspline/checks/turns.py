@@ -20,9 +20,6 @@ from ..types import FloatArray
 NO_HANDLE = 1e-6
 """Length in font units up to which a handle gives no tangent; the next control point then gives one."""
 
-STRAIGHT = 1e-3
-"""Curvature, in 1/em, up to which both sides of a joint are straight, and none jumps against the other."""
-
 SAMPLES = 9
 """Places between two ticks where the jump of curvature is sampled first."""
 
@@ -60,7 +57,8 @@ def jumps_of(controls: FloatArray, units_per_em: FloatArray) -> FloatArray:
         curvature[..., 0] *= -1  # the segment that arrives is reversed
         most = np.abs(curvature).max(axis=-1)
         jump = np.abs(curvature[..., 1] - curvature[..., 0]) / most
-    valid = (length > NO_HANDLE).all(axis=-1) & (most * units_per_em > STRAIGHT)
+    # Curvature, in 1/em, up to which both sides of a joint are straight, and none jumps against the other.
+    valid = (length > NO_HANDLE).all(axis=-1) & (most * units_per_em > 1e-3)
     return np.where(valid, jump, 0.0)
 
 

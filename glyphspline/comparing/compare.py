@@ -18,9 +18,6 @@ from .difference import PER_EM, SIDES, Apart, Difference, Turn
 DIRECTIONS = 16
 """Directions in which contours are measured to pair them."""
 
-MOVED = 0.01
-"""Share of the em by which a kink may move with its outline and still be the same."""
-
 
 def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Difference:
     """What differs between two outlines of one glyph.
@@ -90,7 +87,8 @@ def _changed(
         costs = np.abs(hulls[firsts[g] : firsts[g + 1], None] - other_hulls[others[g] : others[g + 1]]).max(axis=2)
         # Share of the em by which the extents of two contours may differ that are partners.
         gone, came = without_partner(costs, 0.1 * em)
-        reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, MOVED * em))
+        # Share of the em by which a kink may move with its outline and still be the same.
+        reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, 0.01 * em))
         turns_gone, turns_new = unmatched(kinks[g], other_kinks[g], reach)
         worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
         yield {

@@ -34,9 +34,6 @@ SHARP, SLACK = 0.01, 0.01
 """The bound exceeds the distance seen by no more than this share of it, or this many thousandths of an em. Share of
 this sharpness by which points are not nearer than the nearest ones found."""
 
-LONGEST = 8
-"""Segments up to which a stretch is paired with one section."""
-
 DEEPEST, MOST_HALVINGS = 40, 20_000
 """Halvings of a segment, after which a section's bound counts as it is. Halvings of a glyph's sections, after which
 bounds count as they are: hostile outlines would take minutes."""
@@ -316,7 +313,8 @@ def section_bound(
     step, joints = (1, ahead) if 2 * ahead <= n else (-1, n - ahead)
     if n == 2 and 2.0 * z0 < 1.0:  # both ways have one joint: that of the nearer end
         step = -1
-    if other.owners[s0] == other.owners[s1] and joints < LONGEST:
+    # Segments up to which a stretch is paired with one section.
+    if other.owners[s0] == other.owners[s1] and joints < 8:
         best, x, s, z = 0.0, low, s0, z0
         for k in range(joints + 1):
             segment, stop, cut = other.cubics[s], z1, high

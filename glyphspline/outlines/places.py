@@ -19,9 +19,6 @@ TABLE = 32
 TIE = 1e-6
 """Tolerance of rounding and comparison: exact halves and ratios at their bound are common on straight lines."""
 
-ROUNDS = 64
-"""Maximum number of halvings of a spacing; a contour that needs more is refused."""
-
 WEIGHTS = bernstein(TABLE)
 
 
@@ -103,7 +100,8 @@ def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, 
         for k in range(int(parts[j])):
             at[i] = corners[j] + k * (sections[j] / parts[j])
             i += 1
-    for _ in range(ROUNDS):
+    # Maximum number of halvings of a spacing; a contour that needs more is refused.
+    for _ in range(64):
         gaps = np.append(at[1:], at[0] + length) - at
         wide = np.flatnonzero(gaps > (max_ratio + TIE) * np.minimum(np.roll(gaps, 1), np.roll(gaps, -1)))
         if len(wide) == 0:

@@ -15,9 +15,6 @@ from .contour_arrays import ContourArrays, Polylines, offsets_of
 MOST_POINTS = 5_000_000
 """Points of all polygons together: far more than a drawing has, and few enough for the memory."""
 
-ROUNDING = 16 * np.finfo(np.float64).eps
-"""Bound of the rounding errors of a point, relative to the largest coordinate."""
-
 GOLDEN = np.array([0.7548776662466927, 0.5698402909980532])
 """The fractional parts of its multiples are spread evenly over the unit square."""
 
@@ -41,7 +38,8 @@ def flattened(contours: ContourArrays, flatness: float) -> tuple[Polylines, floa
     require(is_positive(flatness), "flatness is a positive distance in font units", flatness)
     from .segments import all_cubics  # here, so that opening needs no compiler
 
-    rounding = ROUNDING * float(np.abs(contours.points).max(initial=0.0))
+    # Bound of the rounding errors of a point, relative to the largest coordinate.
+    rounding = 16 * np.finfo(np.float64).eps * float(np.abs(contours.points).max(initial=0.0))
     aim = flatness - rounding
     if aim < flatness / 2:
         raise OptionError(f"flatness is more than {2 * rounding:.2g}, the rounding of such coordinates")

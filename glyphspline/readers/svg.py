@@ -28,9 +28,6 @@ from .source import Head, Source, first_claims, opening, parsed
 LARGEST_FILE = 1 << 26
 """Limit of bytes of one drawing."""
 
-COINCIDENT = 1e-7
-"""Distance in em below which points coincide. Drawings may be in metres as well as in pixels."""
-
 DEEPEST = 200
 """Limit of nested groups, far above any real drawing."""
 
@@ -99,7 +96,8 @@ def read_drawing(file: Path) -> Outline:
     with opening(file, "drawing"):
         root = svg_root(file)
         metrics, advance = _metrics(root)
-        pen = ContourPen(coincident=COINCIDENT * metrics.units_per_em)
+        # Distance in em below which points coincide. Drawings may be in metres as well as in pixels.
+        pen = ContourPen(coincident=1e-7 * metrics.units_per_em)
         left_out: Counter[str] = Counter()
         for element, matrix, filled in shapes(root, FLIP, True, left_out):
             if filled:

@@ -12,12 +12,6 @@ from ..writers.svg.document import number, text, union, view_box_value
 from ..writers.svg.path_data import Box, curves_data
 from .pages import page_of
 
-PRECISION = 2
-"""Decimals of the drawings."""
-
-LEAST = 0.004
-"""Half the side of the smallest close-up, in em."""
-
 Drawn = tuple[Difference, Outline | None, Outline | None]
 """A difference with both outlines; None for one that could not be read."""
 
@@ -41,7 +35,8 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
     box: Box | None = None
     for kind, outline, scale in (("source", old, 1.0), ("result", new, each.scale)):
         contours = [] if outline is None else [Contour(c.points * scale, c.degrees) for c in outline.contours]
-        data = curves_data(Contours(contours).arrays, PRECISION)[0]
+        # Decimals of the drawings.
+        data = curves_data(Contours(contours).arrays, 2)[0]
         paths.append(f'<path class="{kind}" fill-rule="nonzero" d="{data.text}"/>')
         box = data.box if box is None else union(box, data.box)
     em = 1000.0 if old is None else old.metrics.units_per_em
@@ -53,7 +48,8 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
     if each.worst is not None and not each.identical:
         size = max(right - left, top - bottom)
         # Side of the close-up around the worst place, in distances of the outlines there; half the glyph's at most.
-        half = max(min(12.0 / 2 * each.seen, size / 4), 0.75 * each.seen, LEAST * em)
+        # Half the side of the smallest close-up, in em.
+        half = max(min(12.0 / 2 * each.seen, size / 4), 0.75 * each.seen, 0.004 * em)
         x, y = ((a + b) / 2 for a, b in zip(each.worst.point, each.worst.nearest, strict=True))
         around = (x - half, y - half, x + half, y + half)
         close = drawing("Close-up of the worst place", around, paths, marks(each, em, half), "close")

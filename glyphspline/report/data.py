@@ -49,9 +49,6 @@ COLUMNS = (
 DIGITS, DECIMALS = 5, 7
 """Significant digits of the table's measures. Significant digits of measures, beyond which they are rounding noise."""
 
-WHOLE = 1e15
-"""Below this a float without decimals is written as an integer."""
-
 encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
 """Data as ASCII JSON in one line."""
 
@@ -80,7 +77,8 @@ def plain(value: Any, digits: int = DECIMALS) -> Any:
     near = float(f"{value:.{digits}g}")
     if not isfinite(near):
         return None
-    return int(near) if near.is_integer() and abs(near) < WHOLE else near
+    # Below this a float without decimals is written as an integer.
+    return int(near) if near.is_integer() and abs(near) < 1e15 else near
 
 
 def row_of(entry: Mapping[str, Any]) -> str:

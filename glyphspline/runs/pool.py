@@ -31,9 +31,6 @@ from ..errors import GlyphsplineError
 POLL = 0.25
 """Seconds between checks for hung processes."""
 
-SMALL = 32_768
-"""Bytes of a call that a pipe buffers: sending them does not block."""
-
 STARTS, STARTING = 4, 1800.0
 """Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it.
 Seconds in which a process has to start: compiling everything takes two minutes on an idle machine."""
@@ -283,7 +280,8 @@ class WorkerPool(Executor):
             if not worker.has:
                 self._give_next(worker)
         for worker in ready:
-            if len(worker.has) == 1 and len(self._queue) >= self._max_workers and len(self._queue[0][1]) <= SMALL:
+            # Bytes of a call that a pipe buffers: sending them does not block.
+            if len(worker.has) == 1 and len(self._queue) >= self._max_workers and len(self._queue[0][1]) <= 32_768:
                 self._give_next(worker)
 
     def _give_next(self, worker: _Worker) -> None:

@@ -33,9 +33,6 @@ PATIENCE = 60.0
 PASSING = ("ConnectionError", "TimeoutError", "HTTPClientError", "ClientConnectionError", "ServerTimeoutError")
 """Errors of a connection, by the names of their classes: libraries of providers have types of their own."""
 
-BLOCK = 1 << 16
-"""Bytes that are fetched at once of a file that is read by parts."""
-
 Value = TypeVar("Value")
 
 
@@ -197,7 +194,8 @@ def read(path: str) -> BinaryIO:
     if not is_url(path):
         return open(path, "rb")
     with missing(path, OutputError):
-        return cast(BinaryIO, asked(path, lambda system, there: system.open(there, "rb", block_size=BLOCK)))
+        # Bytes that are fetched at once of a file that is read by parts.
+        return cast(BinaryIO, asked(path, lambda system, there: system.open(there, "rb", block_size=1 << 16)))
 
 
 def size(path: str) -> int:

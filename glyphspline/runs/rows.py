@@ -21,9 +21,6 @@ from ..writers.parquet import schema, write_rows
 UNFINISHED = ".unfinished"
 """Name of the folder of chunks in a run's folder; it is there only until the table is whole."""
 
-PIECES = 8
-"""Pieces of rows held in memory: chunks of several workers or runs alternate."""
-
 
 class Made(NamedTuple):
     """The rows of some glyphs.
@@ -144,7 +141,8 @@ class Rows:
         self._where = {gid: (False, k) for k, gids in enumerate(_row_groups(path)) for gid in gids}
         for k, parts in enumerate(self._kept):
             self._index(k, [table_in(part.rows) for part in parts])
-        self._piece = lru_cache(PIECES)(self._read)
+        # Pieces of rows held in memory: chunks of several workers or runs alternate.
+        self._piece = lru_cache(8)(self._read)
 
     def __contains__(self, gid: object) -> bool:
         return gid in self._where

@@ -14,9 +14,6 @@ from ..types import counted, listed, rounded_up, shortened
 SHOWN = 10
 """Maximum number of the worst, slowest and failed glyphs kept by name; a CJK face may have thousands."""
 
-SLOW = 5.0
-"""Seconds from which the slowest glyphs are listed."""
-
 NAMED = 5
 """Glyphs outside the tolerance, or with other crossings or areas, that are named; of others there is the number."""
 
@@ -128,7 +125,8 @@ class Summary:
         for glyph, notes in self.left_out:
             yield f"{glyph} came out empty: {notes}"
         yield from self.remarks
-        if self.slowest and self.slowest[0][0] > SLOW:
+        # Seconds from which the slowest glyphs are listed.
+        if self.slowest and self.slowest[0][0] > 5.0:
             yield "slowest: " + ", ".join(f"{glyph} {value:.1f} s" for value, glyph in self.slowest[:5])
         for glyph, error in self.failures:
             yield f"failed: {glyph}: {error}"

@@ -23,9 +23,6 @@ SAMPLES, BETWEEN = 33, 1.02
 """Places of each cubic where the error is measured. Factor on the largest error measured, for what lies between: at 513
 places it was larger by 0.8 % at most."""
 
-ROUNDS = 8
-"""Fits of a cubic's handles to the points of its deformed one."""
-
 AT_ONCE = 4096
 """Cubics fitted at once: some 50 MB."""
 
@@ -257,7 +254,8 @@ def _fit(line: _Line, parts: FloatArray, tolerance: float) -> tuple[FloatArray, 
     enough, handles = 0.5 * tolerance, np.empty((2, 2))
     for k in np.flatnonzero(error > enough).tolist():
         ways = np.stack([first[k] / np.hypot(*first[k]), last[k] / np.hypot(*last[k])])
-        off = fit_cubic(target[k], ways, (False, False), enough, ROUNDS, handles)
+        # Fits of a cubic's handles to the points of its deformed one.
+        off = fit_cubic(target[k], ways, (False, False), enough, 8, handles)
         if off < error[k]:
             arms = handles * (np.hypot(*(target[k, -1] - target[k, 0])) / 3)
             pieces[k, 1:3], error[k] = [target[k, 0] + arms[0], target[k, -1] - arms[1]], off

@@ -18,17 +18,11 @@ from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
 from .setting import Place
 
-MOST_PARTS = 1 << 20
-"""Limit of parts of the table; ``length_error`` tells what they miss."""
-
 COINCIDENT, SMOOTH = 1e-9, 1e-7
 """Share of the path's extent below which its ends meet. Radians of turn up to which a joint is smooth: rounding."""
 
 SMALLEST, LARGEST = 1e-50, 1e50
 """Extents of a path; squares of others would under- or overflow."""
-
-NEWTON_STEPS = 2
-"""To a parameter from an arc length: within a part the speed is almost constant."""
 
 INNER_NODES, INNER_WEIGHTS = np.polynomial.legendre.leggauss(4)
 """For lengths inside a part; those of whole parts take the 16 nodes of other curves."""
@@ -199,7 +193,8 @@ class Path:
             long = (gap > 2e-7 * polygon) | (legs.max(axis=1) > 1.1 * legs.min(axis=1))
             # No part shorter than this share of the path is halved, as next to a cusp.
             long &= polygon > 1e-10 * polygon.sum()
-            if not long.any() or len(parts) + int(long.sum()) > MOST_PARTS:
+            # Limit of parts of the table; ``length_error`` tells what they miss.
+            if not long.any() or len(parts) + int(long.sum()) > 1 << 20:
                 break
             left, right = split(parts[long])
             counts = 1 + long
@@ -270,7 +265,8 @@ class Path:
         target = np.clip(target, 0.0, whole)
         x = target / whole
         a, b, c = np.moveaxis(table.velocities[part], 1, 0)
-        for _ in range(NEWTON_STEPS):
+        # To a parameter from an arc length: within a part the speed is almost constant.
+        for _ in range(2):
             places = x[:, None] * ((INNER_NODES + 1) / 2)
             before = _norm(a[:, None], b[:, None], c[:, None], places) @ INNER_WEIGHTS * x / 2
             speed = _norm(a, b, c, x)

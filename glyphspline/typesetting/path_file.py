@@ -16,12 +16,6 @@ from ..readers.svg import FLIP, draw_path, path_data, shapes, svg_root
 from ..types import FloatArray
 from .path import Path
 
-ARC = 15.0
-"""Degrees of an elliptic arc that become one cubic, with an error of 6e-9 of the radius."""
-
-MOST_NAMED = 8
-"""Ids that an error lists."""
-
 
 def open_path(given: str | FilePath) -> Path:
     """Read a path from an SVG file, y up, in CSS pixels (1/96 inch), with view box, units and transforms applied.
@@ -49,7 +43,8 @@ def open_path(given: str | FilePath) -> Path:
     names = [element.get("id") for element, _ in found]
     if mark:
         found = [pair for pair, own in zip(found, names, strict=True) if own == name]
-    listed = ", ".join([str(own) for own in names if own][:MOST_NAMED]) or "none has an id"
+    # Ids that an error lists.
+    listed = ", ".join([str(own) for own in names if own][:8]) or "none has an id"
     if mark and len(found) != 1:
         what = f"{len(found)} shapes have this id" if found else f"no shape has this id; there are: {listed}"
         raise GlyphsplineError(what, font=f"{file}#{name}")
@@ -61,7 +56,8 @@ def open_path(given: str | FilePath) -> Path:
     place = f"{file}#{name}" if name else file
     pen = RecordingPen()
     try:
-        draw_path(path_data(element), matrix, pen, ARC)
+        # Degrees of an elliptic arc that become one cubic, with an error of 6e-9 of the radius.
+        draw_path(path_data(element), matrix, pen, 15.0)
     except GlyphsplineError as error:
         raise error.locate(font=place) from error
     except Exception as error:  # a broken path raises any of a dozen types

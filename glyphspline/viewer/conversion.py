@@ -46,9 +46,6 @@ STEPS = 60
 
 DIGITS = 2
 
-ARC = 7
-"""Points of the polyline that shows the interval of a footpoint."""
-
 
 class Work:
     """A font, opened at each location of its design space on request, and a cache of converted glyphs."""
@@ -281,7 +278,8 @@ def interval_data(arc: Interpolation) -> str:
     """The parts of the curve searched for footpoints, as path data, without those of a single point."""
     wide = arc.intervals[:, 1] > arc.intervals[:, 0]
     a, b = arc.intervals[wide].T
-    t = a[:, None] + (b - a)[:, None] * np.linspace(0, 1, ARC)
+    # Points of the polyline that shows the interval of a footpoint.
+    t = a[:, None] + (b - a)[:, None] * np.linspace(0, 1, 7)
     return "".join(polyline_data(part, DIGITS) for part in arc.spline(t))
 
 

@@ -11,9 +11,6 @@ from ..curves.bspline import Spline
 from ..fitting.results import ContourResult, GlyphResult
 from .settings import Settings
 
-VERSION = 1
-"""Of ``glyph.schema.json``: raised where a reader of the version before would misread a file."""
-
 
 def to_json(glyph: GlyphResult) -> str:
     """The result as JSON, in font units, by the schema ``glyphspline/writers/glyph.schema.json``.
@@ -38,7 +35,8 @@ def to_json(glyph: GlyphResult) -> str:
 def json_text(glyph: GlyphResult, settings: Settings) -> str:
     """The file of a result: coordinates in the unit of the settings, knots and measures as they are."""
     contours = [_contour(contour, settings.scale) for contour in glyph.contours]
-    return as_text({"format": "glyphspline", "version": VERSION, **head(glyph, settings), "contours": contours})
+    # Of ``glyph.schema.json``: raised where a reader of the version before would misread a file.
+    return as_text({"format": "glyphspline", "version": 1, **head(glyph, settings), "contours": contours})
 
 
 def as_text(data: Any) -> str:

@@ -17,14 +17,8 @@ from ..types import FloatArray, counted, rounded_up
 from .json_file import as_text, head
 from .settings import RELATIVE_FLATNESS, Settings
 
-VERSION = 1
-"""Of ``polyline.schema.json``."""
-
 RESERVE = 1e-3
 """Share of the flatness that rounding to decimals may use."""
-
-DIGITS = 4
-"""Significant digits of a bound, which is rounded up."""
 
 _NOT_NAME = re.compile(r"[^A-Za-z0-9_]")
 
@@ -73,7 +67,8 @@ def to_polylines(glyph: GlyphResult | Outline, flatness: float | None = None) ->
 def polyline_json(glyph: GlyphResult, settings: Settings) -> str:
     """The polygons as JSON, by the schema ``glyphspline/writers/polyline.schema.json``."""
     polygons, bound = _written(glyph, settings)
-    data = {"format": "glyphspline-polyline", "version": VERSION, **head(glyph, settings), "fill_rule": "nonzero"}
+    # Of ``polyline.schema.json``.
+    data = {"format": "glyphspline-polyline", "version": 1, **head(glyph, settings), "fill_rule": "nonzero"}
     limits = {"flatness": _flatness(glyph, settings) * settings.scale, "bound": bound}
     return as_text({**data, **limits, "contours": [polygon.tolist() for polygon in polygons]})
 
@@ -155,7 +150,8 @@ def _written(glyph: GlyphResult, settings: Settings) -> tuple[list[FloatArray], 
     decimals = max(0, math.ceil(-math.log10(flatness * RESERVE * settings.scale * math.sqrt(2))))
     rounding = 0.5 * 10.0**-decimals * math.sqrt(2)
     polygons = [np.round(polygon * settings.scale, decimals) + 0.0 for polygon in found.polygons]
-    return polygons, rounded_up(found.bound * settings.scale + rounding, DIGITS)
+    # Significant digits of a bound, which is rounded up.
+    return polygons, rounded_up(found.bound * settings.scale + rounding, 4)
 
 
 def _area(polygon: FloatArray) -> float:

@@ -33,12 +33,6 @@ RELATIVE_FLATNESS = 1 / 2000
 ViewBox = Literal["em", "metrics", "ink"]
 VIEW_BOXES: tuple[ViewBox, ...] = get_args(ViewBox)
 
-LARGEST = 200.0
-"""Maximum height of a drawing, and of its em, in inches: five metres, which is what a cutter's roll takes."""
-
-STROKE = 1 / 1000
-"""Width in em of a line along the outline that says none: cutters follow its middle."""
-
 _LENGTH = re.compile(r"(\d{1,6}(?:\.\d{1,9})?)([a-z]*)")
 _HEX = re.compile(r"#(?:[0-9a-fA-F]{3}|[0-9a-fA-F]{6})")
 _NAME = re.compile(r"[a-z]{3,20}")
@@ -109,7 +103,8 @@ class Appearance:
             OptionError: it is a length on paper, and the drawing has no size.
         """
         if self.stroke_width is None:
-            return STROKE * units_per_em
+            # Width in em of a line along the outline that says none: cutters follow its middle.
+            return (1 / 1000) * units_per_em
         number, unit = _LENGTH.findall(self.stroke_width)[0]
         width = float(number)
         if unit in INCHES:
@@ -134,7 +129,8 @@ def paper_length(name: str, value: str | None) -> tuple[float, str] | None:
     if value is None:
         return None
     found = _LENGTH.fullmatch(value) if isinstance(value, str) else None
-    if found is None or found[2] not in INCHES or not 0 < float(found[1]) * INCHES[found[2]] <= LARGEST:
+    # Maximum height of a drawing, and of its em, in inches: five metres, which is what a cutter's roll takes.
+    if found is None or found[2] not in INCHES or not 0 < float(found[1]) * INCHES[found[2]] <= 200.0:
         units = ", ".join(INCHES)
         raise OptionError(f"{name} is a length above 0 and up to 5 m with its unit ({units}), not {value!r}")
     return float(found[1]), found[2]

@@ -43,9 +43,6 @@ LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"
 BACKGROUND = "public.background"
 
-DIGITS = 4
-"""Decimals of coordinates: a handle of 10 units turns by less than 0.001 degrees."""
-
 Place = tuple[float, ...]
 """A normalised location, rounded as fonts store it."""
 
@@ -262,7 +259,8 @@ def _write_master(name: str, new: Redrawn, k: int, glyphs: Any) -> None:
     # The flag of a point is one for all masters, as it is in editors: smooth where it is in each.
     smooth = [np.all([smooth_ends(master) for master in each], axis=0).tolist() for each in in_all]
     glyph = SimpleNamespace(width=as_number(float(masters.advances[k])), unicodes=list(masters.unicodes))
-    glyphs.writeGlyph(name, glyph, lambda pen: draw([each[k] for each in in_all], DIGITS, pen, smooth))
+    # Decimals of coordinates: a handle of 10 units turns by less than 0.001 degrees.
+    glyphs.writeGlyph(name, glyph, lambda pen: draw([each[k] for each in in_all], 4, pen, smooth))
 
 
 def on_axis(axis: DesignAxis, x: float) -> float | int:

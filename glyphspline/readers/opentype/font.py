@@ -34,9 +34,6 @@ PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
 MOST_FACES = 1000
 """Limit of faces of a collection: each takes four bytes of a hostile file, and the time of a font."""
 
-MOST_CHARACTERS = 0x110000
-"""Limit of code points in the segments of a table of characters: as many as there are. fontTools lists them all."""
-
 UNICODE_CMAPS = frozenset({(3, 10), (3, 1), *((0, encoding) for encoding in (0, 1, 2, 3, 4, 6))})
 """Platforms and encodings of the tables of characters that a font is read by."""
 
@@ -170,7 +167,9 @@ def check_characters(data: bytes) -> None:
     """
     for at in range(8, len(data) - 3, 8)[: int.from_bytes(data[2:4], "big")]:
         with suppress(struct.error, ValueError):
-            if _code_points(data, *struct.unpack_from(">L", data, at)) > MOST_CHARACTERS:
+            # Limit of code points in the segments of a table of characters: as many as there are. fontTools lists them
+            # all.
+            if _code_points(data, *struct.unpack_from(">L", data, at)) > 0x110000:
                 raise FontError("a broken font: its table of characters has more code points than there are")
 
 

@@ -37,9 +37,6 @@ if TYPE_CHECKING:
     from ...outlines.outline import Outline
     from ...types import FloatArray
 
-DECIMALS = 2
-"""Decimals of coordinates up to which two contours have one shape."""
-
 STEPS = 8
 """Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
 
@@ -159,7 +156,8 @@ def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
             begin: FloatArray = contours[key[1]].points[..., :1, :]
             data = b""
             for contour in [contours[number] for number in key[1:] if number >= 0]:
-                data += (np.round(contour.points - begin, DECIMALS) + 0.0).tobytes() + contour.degrees.tobytes()
+                # Decimals of coordinates up to which two contours have one shape.
+                data += (np.round(contour.points - begin, 2) + 0.0).tobytes() + contour.degrees.tobytes()
             if (repeats := glyphs[key[0]].repeats) is not None:
                 first = sum(len(contour.degrees) for contour in contours[: key[1]])
                 repeats = repeats[first : first + len(contours[key[1]].degrees)]

@@ -23,9 +23,6 @@ Glyph = tuple[int, int]
 COUNTS = ("contours", "segments", "doubled_points", "leftover_points", "contours_left_out", "broken_glyphs")
 """Facts that are numbers."""
 
-OVERLAP = 1e-5
-"""Share of a square em below which the area of an overlap counts as rounding."""
-
 
 @dataclass(frozen=True)
 class FactsJob(Job[Glyph, dict[str, Any]]):
@@ -131,4 +128,5 @@ def overlaps(outline: Outline) -> bool:
     filled, summed = (
         sum(area(contour.cubics()) for contour in contours) for contours in (contours_of(path), outline.contours)
     )
-    return abs(abs(filled) - abs(summed)) > OVERLAP * outline.metrics.units_per_em**2
+    # Share of a square em below which the area of an overlap counts as rounding.
+    return abs(abs(filled) - abs(summed)) > 1e-5 * outline.metrics.units_per_em**2

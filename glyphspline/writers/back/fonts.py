@@ -37,12 +37,7 @@ from ..font.variable_glyf import Gvar, placed_by_points, put_glyphs
 NEAR = 2e-3
 """Units within which a contour as it is stored is the one that was read."""
 
-INFERRED = 0.5
-"""Units by which a point whose delta a font leaves to be inferred may be off: what rounding may make of one given."""
-
 PHANTOMS = 4
-
-CFF_STACK = 48
 
 OUTLINES = ("glyf", "loca", "gvar", "CFF ", "CFF2")
 BOUNDS = ("head", "hmtx", "vmtx", "hhea", "vhea", "maxp")
@@ -223,7 +218,8 @@ class FontEdit:
                 points[:count] += change[:, [0, *order]]
                 points[count:] += change[:1, [0, *order]]  # a contour that ends where it begins
             with_points(commands, whole)
-            stack = maxStackLimit if table == "CFF2" else CFF_STACK
+            # Type 2 char strings of CFF have a stack of 48.
+            stack = maxStackLimit if table == "CFF2" else 48
             program = commandsToProgram(
                 specializeCommands(commands, generalizeFirst=False, preserveTopology=True, maxstack=stack)
             )
@@ -303,7 +299,9 @@ def given_deltas(
     every = [*map(tuple, points.tolist()), *[(0, 0)] * PHANTOMS]
     while None in found:
         inferred = np.array(iup_delta([*found, *[(0, 0)] * PHANTOMS], every, [len(found) - 1]))[:-PHANTOMS]
-        far = np.abs(inferred - wanted).max(axis=1) > INFERRED
+        # Units by which a point whose delta a font leaves to be inferred may be off: what rounding may make of one
+        # given.
+        far = np.abs(inferred - wanted).max(axis=1) > 0.5
         more = [k for k, delta in enumerate(found) if delta is None and far[k]]
         if not more:
             break

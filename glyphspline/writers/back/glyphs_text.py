@@ -12,9 +12,6 @@ from .nodes import Node, Position
 
 TOKEN = re.compile(r'\s*(?:([{}()=;,])|("(?:[^"\\]|\\.)*")|(<[^>]*>)|([^\s{}()=;,"]+))', re.DOTALL)
 
-DEEPEST = 100
-"""Lists within lists that a Glyphs file may have."""
-
 LETTERS = {"l": "line", "c": "curve", "q": "qcurve", "o": None}
 WORDS = {"LINE": "line", "CURVE": "curve", "QCURVE": "qcurve", "OFFCURVE": None}
 """Kinds of nodes in version 3 and in version 2, and UFO's names of them."""
@@ -137,7 +134,8 @@ def _plain(text: Any) -> str:
 def _parsed(text: str, at: int, depth: int) -> tuple[Value, int]:
     """A value and where it ends."""
     token = TOKEN.match(text, at)
-    if token is None or depth > DEEPEST:
+    # Lists within lists that a Glyphs file may have.
+    if token is None or depth > 100:
         raise FontError(f"is no Glyphs file: nothing is understood at character {at}")
     mark, start = token[1], token.start(token.lastindex or 0)
     at = token.end()

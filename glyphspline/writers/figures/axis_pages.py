@@ -26,9 +26,6 @@ PAGE = (11.69, 8.27)
 LEAST_SHOWN = 0.05
 """Degrees from which a turn is more than 0.0."""
 
-LISTED = 60
-"""Maximum number of glyphs that are named on the page of those without a result."""
-
 OfAxis = MastersResult | tuple[str, str]
 """A result, or the name of a glyph without one and the reason."""
 
@@ -110,7 +107,8 @@ def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], sc
 def failures_page(failed: Sequence[tuple[str, str]], heading: str) -> Any:
     """The names of glyphs without a result, with the reasons, as a matplotlib figure."""
     figure = headed(f"{heading}: without a result", "", PAGE)
-    lines = shortened([f"{name}: {reason}"[:180] for name, reason in failed], LISTED)
+    # Maximum number of glyphs that are named on the page of those without a result.
+    lines = shortened([f"{name}: {reason}"[:180] for name, reason in failed], 60)
     figure.text(0.05, 0.93, ascii_text("\n".join(lines)), fontsize=7, va="top", parse_math=False)
     return figure
 

@@ -17,9 +17,6 @@ from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, ring, sav
 SIZE = 6.0
 """Height in inches of a drawing that says none, and width and height of a map."""
 
-LARGEST = 8000.0
-"""Maximum width and height of a PNG in pixels; a larger one has fewer an inch."""
-
 
 def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: Box | None = None) -> bytes:
     """What :func:`..svg.document.to_svg` draws, as a one-page PDF or as a PNG on white.
@@ -47,7 +44,8 @@ def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: 
         patch.set_clip_on(False)
         axes.add_patch(patch)
     dpi = 96.0 if str(look.size or look.em).endswith("px") else DPI  # a height in px is that many pixels
-    return saved(figure, kind, min(dpi, LARGEST / (inches * max(1.0, width / height))))
+    # Maximum width and height of a PNG in pixels; a larger one has fewer an inch.
+    return saved(figure, kind, min(dpi, 8000.0 / (inches * max(1.0, width / height))))
 
 
 def write_map(

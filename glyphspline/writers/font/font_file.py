@@ -58,9 +58,6 @@ SPENT = ("DSIG", "STAT", "MERG", "VORG")
 DATE = 3_786_912_000
 """2024-01-01 in a font's seconds, for sources without a date: the bytes must not depend on the clock."""
 
-MOST_NAMES = 32767 - 257
-"""Names of glyphs that ``post`` has room for besides the standard ones."""
-
 
 @dataclass(frozen=True)
 class FontSummary:
@@ -350,7 +347,8 @@ def become(font: TTFont, flavour: Flavour, glyphs: dict[str, Any], family: str) 
         builder.setupGlyf(glyphs, calcGlyphBounds=False)
         font["head"].glyphDataFormat = 0
         # A font of more glyphs than a table of names has room for keeps none, like its source.
-        post.formatType, post.extraNames, post.mapping = 2.0 if len(glyphs) <= MOST_NAMES else 3.0, [], {}
+        # Names of glyphs that ``post`` has room for besides the standard ones.
+        post.formatType, post.extraNames, post.mapping = 2.0 if len(glyphs) <= 32767 - 257 else 3.0, [], {}
         post.glyphOrder = font.getGlyphOrder()
     else:
         builder.setupCFF(postscript(family), {"FamilyName": family, "FullName": family}, glyphs, {})

@@ -26,15 +26,6 @@ from .master_deltas import Redrawn, Tally
 NEAR = 1e-3
 """Distance in font units up to which points are one: curves come back from their fit as exact as numbers are."""
 
-MEETS = 1.0
-"""Distance in font units, in every master, up to which a joint is the source's: rounding moves it by half a unit."""
-
-WORSE = 0.05
-"""Degrees by which a joint may turn more than the source's before another candidate is taken."""
-
-BETWEEN = 16
-"""Locations inside the design space, besides the corners of its grid, where what cannot be certified is measured."""
-
 NOTHING_NEW = "none of its arcs can be drawn anew without a kink or more points"
 """Why a glyph keeps its outline."""
 
@@ -94,8 +85,11 @@ class Turning:
         """Contour and segment of the joints that do not turn so in the source."""
         found = []
         for joint, place, turn in zip(self.joints, self.places, self.turns.tolist(), strict=True):
-            near = np.abs(source.places - place).max(axis=(1, 2), initial=0.0) <= MEETS
-            if not (near & (source.turns >= turn - WORSE)).any():
+            # Distance in font units, in every master, up to which a joint is the source's: rounding moves it by half a
+            # unit.
+            near = np.abs(source.places - place).max(axis=(1, 2), initial=0.0) <= 1.0
+            # Degrees by which a joint may turn more than the source's before another candidate is taken.
+            if not (near & (source.turns >= turn - 0.05)).any():
                 found.append(joint)
         return found
 
@@ -116,7 +110,8 @@ def locations(masters: Masters) -> FloatArray:
     """(V, A) normalised locations: the corners of the grid, and some inside."""
     corners = masters.grid()
     low, high = corners.min(axis=0), corners.max(axis=0)
-    return np.vstack([corners, np.random.default_rng(0).uniform(low, high, (BETWEEN, len(low)))])
+    # Locations inside the design space, besides the corners of its grid, where what cannot be certified is measured.
+    return np.vstack([corners, np.random.default_rng(0).uniform(low, high, (16, len(low)))])
 
 
 def vanished(contour: MasterContour) -> list[int]:
