@@ -25,7 +25,7 @@ STEPS = 8
 DIGITS = 3
 """Decimals of coordinates at most."""
 
-INSIDE = 4
+INSIDE = 6
 """Parts of an interval of an axis between two ticks, at whose ends turns are bounded."""
 
 SMOOTH = 12.0
@@ -179,23 +179,33 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
     if anchors is None:
         anchors = np.repeat(np.arange(m + 1.0)[:, None], 2, axis=1)
         bounds[(one == other).all(axis=(0, 2, 3))] = 0.0
-    arcs = arcs_of(old) if count > 1 and np.isnan(bounds).any() and m == len(old) else np.empty((0, 4))
+    arcs = arcs_of(old, new) if count > 1 and m == len(old) else np.empty((0, 4))
     rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(-1, 4, 2)) for each in (other, one)]
-    pair_instances(
-        count, rows[0], offsets_of([m]), rows[1], offsets_of([len(old)]), anchors, offsets_of([m + 1]),
-        arcs, SHARPNESS * design.tolerance, design.tolerance, bounds, gaps,
-    )  # fmt: skip
+    changed = np.flatnonzero(np.isnan(bounds))
+    for own in changed[:, None] if len(arcs) else [changed]:  # of an arc only the first one beyond is measured well
+        bound = np.zeros(m)
+        bound[own] = np.nan
+        pair_instances(
+            count, rows[0], offsets_of([m]), rows[1], offsets_of([len(old)]), anchors, offsets_of([m + 1]),
+            arcs, SHARPNESS * design.tolerance, design.tolerance, bound, gaps,
+        )  # fmt: skip
+        bounds[own] = bound[own]
     return bounds
 
 
-def arcs_of(contour: MasterContour) -> FloatArray:
-    """(m, 4) the arc between corners that each segment belongs to, as :func:`.pair_instances` takes it."""
-    m = len(contour)
+def arcs_of(contour: MasterContour, other: MasterContour) -> FloatArray:
+    """(m, 4) the arc between corners that each segment belongs to, as :func:`.pair_instances` takes it.
+
+    It is (0, 4) where a corner is elsewhere in the other contour: arcs have their ends in common.
+    """
+    m, starts = len(contour), np.cumsum(contour.degrees) - contour.degrees
     with np.errstate(invalid="ignore"):
         smooth = (np.abs(turns_of(joint_controls(contour))) < SMOOTH).all(axis=0)
     corners = np.flatnonzero(~smooth)
     if not len(corners):
         return np.tile([-np.inf, np.inf, -np.inf, np.inf], (m, 1))
+    if (contour.points[:, starts[corners]] != other.points[:, starts[corners]]).any():
+        return np.empty((0, 4))
     segments = np.arange(m)
     at = np.searchsorted(corners, segments, side="right")
     first = np.where(at > 0, corners[at - 1], corners[-1] - m)
