@@ -286,9 +286,11 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
             continue
         found.append(Bound(joint, around, False, most, np.ones(len(at))))
         if (layout.degrees[[joint - 1, joint]] == 3).all() and np.abs(np.diff(at, axis=1)).max(axis=2).min() > EXACT:
-            per = np.maximum(np.abs(curvatures_at(at)).max(axis=0), limits.jump / design.em)
+            meets = own and way.meets and joint not in group.jumps
+            ends = np.abs(curvatures_at(at))  # what the larger one becomes is not less than the smaller one
+            per = np.maximum(ends.min(axis=0) if meets else ends.max(axis=0), limits.jump / design.em)
             most = LOOSE * np.maximum(limits.relative_jump, limits.jump / design.em / per)
-            if not (own and way.meets) or joint in group.jumps:
+            if not meets:
                 most = np.maximum(most, np.abs(jumps_at(at)[0]) / per)
             found.append(Bound(joint, around, True, most, per))
     return found

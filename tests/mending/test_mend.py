@@ -18,7 +18,9 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.checks.finding import Finding
+from glyphspline.checks.kinds import THRESHOLDS
 from glyphspline.cli.commands import app
+from glyphspline.mending.state import Design, distances
 from glyphspline.outlines.masters import DesignAxis, MasterContour
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_source
@@ -374,3 +376,34 @@ def test_short_segments_go_in_all_masters_and_numbers_are_those_of_check() -> No
     assert {(one.segment, one.is_mended, one.gone) for one in changes} == {(1, True, 1), (4, True, 1)}
     assert mended.contours[0].points.shape == (2, 4, 2)
     assert not [one for k in (0, 1) for one in gs.check(mended.master(k)) if one.kind in ("short", "slanted")]
+
+
+def test_curvatures_meet_where_they_jumped() -> None:
+    shape = [(0, 0), (0, 300), (190, 500), (300, 500), (460, 500), (600, 300), (600, 0)]
+    outline = gs.Outline("n", contours=[Contour(np.array(shape), np.array([3, 3, 1]))])
+    assert [one.kind for one in gs.check(outline)] == ["jump"]
+    mended, (change,) = gs.mend(outline, ["jump"], 12)
+    assert change.is_mended
+    assert not gs.check(mended)
+    assert gs.compare(outline, mended).seen <= 12
+    assert mended.contours[0].points[2:5, 1].tolist() == [500, 500, 500]
+    same, (left,) = gs.mend(outline, ["jump"], 0.2)
+    assert same is outline
+    assert left.needs is not None
+    assert left.needs > 0.2
+
+
+@pytest.mark.parametrize("corner", [0.0, 9.0])
+def test_bounds_hold_where_curves_slip_along_themselves(corner: float) -> None:
+    masters = family_of(SHAPE, BOLD)
+    old = masters.contours[0]
+    points = old.points.copy()
+    points[0, 4] += 0.2 * (points[0, 4] - points[0, 3])  # a handle is made longer
+    points[1, 0, 0] += corner
+    new = MasterContour(points, old.degrees)
+    bounds = distances(old, new, Design.of(masters, 3.0, THRESHOLDS, None))
+    for weight in np.linspace(0, 1, 21):
+        one, other = (each.mixed(np.array([1 - weight, weight])) for each in (old, new))
+        seen = gs.compare(gs.Outline("a", contours=[one]), gs.Outline("a", contours=[other])).seen
+        assert seen <= bounds.max()
+    assert bounds.max() < 8 + 2 * corner
