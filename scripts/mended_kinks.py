@@ -44,13 +44,15 @@ class Family(NamedTuple):
     beyond: int
     spent: float
 
-    def row(self) -> list[object]:
+    def row(self) -> list[str]:
         """Of the table."""
         moves = [each.moved for each in self.kinks if each.is_mended]
         far = sum(move > 3 for move in moves)
+        found = share(len(moves), len(self.kinks)), share(far, len(moves))
+        counts = self.new, self.points, self.beyond
         return [
-            self.name, self.glyphs, len(self.kinks), share(len(moves), len(self.kinks)), share(far, len(moves)),
-            self.new, self.points, self.beyond, f"{1000 * self.spent / self.glyphs:.0f} ms",
+            self.name, str(self.glyphs), str(len(self.kinks)), *found, *map(str, counts),
+            f"{1000 * self.spent / self.glyphs:.0f} ms",
         ]  # fmt: skip
 
 
@@ -90,8 +92,8 @@ def reasons(kinks: list[Change]) -> str:
     rows: list[list[object]] = []
     for why, count in Counter(each.why for each in kinks if each.why).most_common():
         needs = [each.needs for each in kinks if each.why == why and each.needs]
-        quartiles = np.quantile(needs, (0.25, 0.5, 0.75)) if needs else []
-        rows.append([why, count, ", ".join(f"{each:.1f}" for each in quartiles)])
+        quartiles = [f"{np.quantile(needs, share):.1f}" for share in (0.25, 0.5, 0.75) if needs]
+        rows.append([why, count, ", ".join(quartiles)])
     return table(["left, as it", "", "needs"], rows)
 
 
