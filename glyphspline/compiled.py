@@ -139,10 +139,10 @@ def compiled(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """A function whose body takes the place of each call before types are inferred: for helpers of SIMD loops.
+    """A function whose body takes the place of each call before types are inferred.
 
-    LLVM inlines a call too, but too late for some loops to become SIMD. The body is typed again for every call, so this
-    is for a few lines only.
+    It is for helpers of SIMD loops, as LLVM inlines too late for some loops to become SIMD; and for a few lines that
+    have few callers, which need no machine code, and no file, of their own. The body is typed again for every call.
     """
     decorated: Any = njit(inline="always", error_model="numpy")(function)
     return decorated  # type: ignore[no-any-return, unused-ignore]

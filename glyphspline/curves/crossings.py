@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..arrays import ascending, grown
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray, IntArray
 from .contacts import crossing_contacts
 from .cubics import extent, split
@@ -123,11 +123,7 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             s, t = min(i, j), max(i, j)  # the order of the contours
             # An end of a chord lies on another chord within this many chord errors of it.
             touch = 4.0 * flat if deep[s] > 0 or deep[t] > 0 else EXACT / FLAT * flat
-            for k in range(8):
-                A[0, k // 2, k % 2], B[0, k // 2, k % 2] = (
-                    cubics[piece[s], k // 2, k % 2],
-                    cubics[piece[t], k // 2, k % 2],
-                )
+            A[0], B[0] = cubics[piece[s]], cubics[piece[t]]
             marks[0, 0], marks[0, 1] = 0, 0
             marks[0, 2] = (
                 AFTER * (after[s] == t) + BEFORE * (after[t] == s) if s != t else SELF + AFTER * (after[s] == s)
@@ -218,7 +214,7 @@ def parameter_at(cubic: FloatArray, share: float) -> float:
     return (low + high) / 2
 
 
-@compiled
+@inlined
 def legs(cubic: FloatArray) -> float:
     """Length of a control polygon (4, 2), every leg as |x| + |y|."""
     total = 0.0
@@ -231,11 +227,9 @@ def legs(cubic: FloatArray) -> float:
 def halve(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int, which: int) -> int:
     """Replace the pair at the top of the stack by two, with the halves of A (``which`` 0) or B (1)."""
     one, other = (A, B) if which == 0 else (B, A)
-    for k in range(8):
-        other[top + 1, k // 2, k % 2] = other[top, k // 2, k % 2]
+    other[top + 1] = other[top]
     split(one[top], 0.5, one[top + 1])  # the first half to the top, the second one below
-    for k in range(2):
-        marks[top + 1, k], begins[top + 1, k] = marks[top, k], begins[top, k]
+    marks[top + 1], begins[top + 1] = marks[top], begins[top]
     marks[top, which] += 1
     marks[top + 1, which] += 1
     begins[top, which] += 0.5 ** marks[top, which]
@@ -251,9 +245,7 @@ def halve_itself(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArr
     split(A[top], 0.5, A[top + 1])
     level, begin = marks[top, 0] + 1, begins[top, 0]
     middle = begin + 0.5**level
-    for k in range(8):
-        A[top + 2, k // 2, k % 2] = A[top + 1, k // 2, k % 2]
-        B[top + 2, k // 2, k % 2] = A[top, k // 2, k % 2]
+    A[top + 2], B[top + 2] = A[top + 1], A[top]
     for k in range(3):
         marks[top + k, 0], marks[top + k, 1] = level, level
         marks[top + k, 2] = SELF if k < 2 else AFTER + BEFORE * (marks[top, 2] & AFTER > 0)

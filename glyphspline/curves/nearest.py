@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..types import FloatArray
 from .cubics import CLOSE, STEPS, jet, nearest, newton_step
 
@@ -39,7 +39,7 @@ def nearest_together(
     return at
 
 
-@compiled
+@inlined
 def square_to(V: int, chain: FloatArray, s: int, z: float, points: FloatArray, p: int, k: int) -> float:
     """The squared distance of segment s at z from a point."""
     total = 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arrays import ascending
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..types import FloatArray, IntArray
 from .cubics import jet
 
@@ -100,7 +100,7 @@ def convex_hull(points: FloatArray) -> FloatArray:
     return hull[: max(count, 1)]
 
 
-@compiled
+@inlined
 def side(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
     """Positive where p lies to the left of the line from a to b."""
     return (bx - ax) * (py - ay) - (by - ay) * (px - ax)

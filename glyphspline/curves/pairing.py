@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..types import FloatArray, IntArray
 from .cubics import extent, length, section, split
 from .nearest import nearest_together, search_place
@@ -85,7 +85,7 @@ def pair_instances(
         lost = np.nan
         result = results[V * result_offsets[c] : V * result_offsets[c + 1]]
         source = sources[V * source_offsets[c] : V * source_offsets[c + 1]]
-        rounding = ROUNDING * max(extent(result), extent(source))
+        rounding, lost = ROUNDING * max(extent(result), extent(source)), np.nan
         for k in range(anchor_offsets[c], anchor_offsets[c + 1] - 1):
             if not np.isnan(bounds[k - c]):
                 continue
@@ -204,7 +204,7 @@ def pair_span(
     found[0], found[1], found[2] = bound, gap, where
 
 
-@compiled
+@inlined
 def apart(A: FloatArray, B: FloatArray, k: int) -> float:
     """Distance of Bézier points k of two cubics (4, 2)."""
     return length(A[k, 0] - B[k, 0], A[k, 1] - B[k, 1])

@@ -28,7 +28,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray
 from .bezier import split
 from .cubics import length, section
@@ -87,7 +87,7 @@ def slip_bound(
     return max(_one_way(slip[0], V), _one_way(slip[1], V))
 
 
-@compiled
+@inlined
 def _one_way(slip: FloatArray, V: int) -> float:
     """The bound in one direction, from what :func:`_add_part` gathered."""
     alone, mixed, ratio = slip[0], slip[1], slip[3] / slip[2]

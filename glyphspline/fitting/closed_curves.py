@@ -58,7 +58,7 @@ def interpolated(
     found = interpolate_batch(
         points, offsets, method_for(options, options.fallback), by_knot=even, held=held, threads=1
     )
-    for k in np.flatnonzero(found.whole[:, 0]).tolist():
+    for k in np.flatnonzero(found.arrays.whole[:, 0]).tolist():
         raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
     return found
 
@@ -140,13 +140,13 @@ def through_polygons(
         PolygonError: a polygon that cannot be interpolated; its ``contour`` is the index.
     """
     found = interpolated(points, offsets, options)
-    counts = found.whole[:, 1]
+    counts, arrays = found.arrays.whole[:, 1], found.arrays
     if counts.sum() < len(points):  # duplicates were merged
-        kept = found.kept[_leading(offsets, counts)] + np.repeat(offsets[:-1], counts)
+        kept = arrays.kept[_leading(offsets, counts)] + np.repeat(offsets[:-1], counts)
         points, places = points[kept], None if places is None else places[kept]
     ends = offsets_of(counts)
-    controls = found.controls[_leading(offsets, counts)]
-    knots = found.knots[_leading(offsets + np.arange(len(offsets)), counts + 1)]  # one more a spline
+    controls = arrays.controls[_leading(offsets, counts)]
+    knots = arrays.knots[_leading(offsets + np.arange(len(offsets)), counts + 1)]  # one more a spline
     pieces, written = beziers(controls, knots, ends, 10.0**options.precision)
     closed, arcs = np.ones(len(counts), dtype=np.bool_), Views(len(counts), found.results)
     measures = solved_columns([(found, np.arange(len(counts)))])

@@ -288,7 +288,6 @@ def _contour_result(
 
     Lines are meant to stay in a ``sharp`` fit only.
     """
-    assert fit.regular is not None  # it is a fit of masters
     own = slice(fit.offsets[c], fit.offsets[c + 1])
     spans = fit.pieces.spans[own]
     segments = np.maximum(spans, 1)

@@ -61,7 +61,7 @@ def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Co
     Args:
         parts: results of a batch and the indices of the chosen polygons in it, in the order of the contours.
     """
-    counts, iterations, fallbacks = np.concatenate([found.whole[which, 1:4] for found, which in parts]).T
+    counts, iterations, fallbacks = np.concatenate([found.arrays.whole[which, 1:4] for found, which in parts]).T
     residuals = np.concatenate([found.last_residuals[which] for found, which in parts])
     tolerances = np.concatenate([found.tolerances[which] for found, which in parts])
     return {
@@ -71,7 +71,7 @@ def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Co
         "iterations": iterations.tolist(),
         "residual": residuals.tolist(),
         "converged": (residuals < tolerances).tolist(),
-        "rate_bound": np.concatenate([found.rates[which] for found, which in parts]).tolist(),
+        "rate_bound": np.concatenate([found.arrays.rates[which] for found, which in parts]).tolist(),
         "fallbacks": fallbacks.tolist(),
     }
 

@@ -12,11 +12,11 @@ from numpy.typing import ArrayLike
 
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import BoolArray, FloatArray, IntArray
-from .batch import NONE_HELD, empty_results, filled, over_threads, run_batch
+from .batch import NONE_HELD, filled, over_threads, run_batch
 from .driver import interpolate_any_degree, interpolate_any_vertex, solved
 from .method import Fallback, Finish, Method, Parametrisation, Tangents, method_of
 from .polygon import as_points, as_tangents, explain
-from .result import BatchedInterpolation, Interpolation
+from .result import BatchedInterpolation, Found, Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
 
@@ -95,25 +95,11 @@ def interpolate(
 
 @overload
 def interpolate_many(
-    polygons: Iterable[ArrayLike],
-    variant: int = 2,
-    *,
-    knots: Parametrisation | Sequence[ArrayLike] = "chord",
-    end_tangents: Sequence[Tangents | None] | None = None,
-    threads: int | None = None,
-    errors: Literal["raise"] = "raise",
-    **options: Any,
+    polygons: Iterable[ArrayLike], variant: int = 2, *, errors: Literal["raise"] = "raise", **options: Any
 ) -> list[Interpolation]: ...
 @overload
 def interpolate_many(
-    polygons: Iterable[ArrayLike],
-    variant: int = 2,
-    *,
-    knots: Parametrisation | Sequence[ArrayLike] = "chord",
-    end_tangents: Sequence[Tangents | None] | None = None,
-    threads: int | None = None,
-    errors: Literal["return"],
-    **options: Any,
+    polygons: Iterable[ArrayLike], variant: int = 2, *, errors: Literal["return"], **options: Any
 ) -> list[Interpolation | PolygonError]: ...
 def interpolate_many(
     polygons: Iterable[ArrayLike],
@@ -302,7 +288,7 @@ def interpolate_batch(
         tolerances = residual_tolerances.copy()
     if not method.stepwise:
         return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads, held)
-    arrays = empty_results(len(points), count, closed, points.shape[1])
+    arrays = Found.empty(len(points), count, closed, points.shape[1])
     u, P, parameters, bounds, kept, whole, rates = arrays
     whole[:] = np.array([1, 0, -1, 0, 0, 0])
     residuals = [np.empty(0)] * count
@@ -323,9 +309,9 @@ def interpolate_batch(
         u[first : first + n + closed], P[start : start + n + 2 * (not closed)] = r.spline.knots, r.spline.control_points
         parameters[a : a + n], bounds[a : a + n] = r.parameters, r.intervals
         kept[a : a + n] = np.delete(np.arange(b - a), r.merged)
-        whole[k, :4], whole[k, 5] = (0, n, r.iterations, r.fallbacks), r.uncertified
+        whole[k, :4], whole[k, 5] = (0, n, r.iterations, r.fallbacks), r.uncertified or 0
         rates[k], residuals[k] = r.rate_bound, r.residuals
         tolerances[k] = own.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
 
     over_threads(one, range(count), threads)
-    return BatchedInterpolation(offsets, closed, tolerances, np.concatenate([*residuals, np.empty(0)]), *arrays)
+    return BatchedInterpolation(offsets, closed, tolerances, np.concatenate([*residuals, np.empty(0)]), arrays)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..types import BoolArray, FloatArray, IntArray
 from .method import CHORD_EXPONENT, SETTLED, Method
-from .result import BatchedInterpolation
+from .result import BatchedInterpolation, Found
 
 GIVEN = -1.0
 """In place of a chord exponent: knots are given."""
@@ -49,18 +49,18 @@ def run_batch(
         tangents = np.full((count, 2, d), np.nan) if end_tangents is None else end_tangents
     exponent = GIVEN if method.knots is None else CHORD_EXPONENT[method.knots]
     settled = SETTLED if method.finish == "solve" else 0.0
-    found = empty_results(total, count, closed, d)
+    found = Found.empty(total, count, closed, d)
+    given = (
+        points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant, float(method.margin),
+        exponent, peak_shares, tolerances, method.max_iterations, settled, held,
+    )  # fmt: skip
 
     def work(part: tuple[int, int]) -> Any:
-        return _driver().run(
-            *part, points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant,
-            float(method.margin), exponent, peak_shares, tolerances, method.max_iterations, settled, held, *found,
-            _memory(offsets, *part, d),
-        )  # fmt: skip
+        return _driver().run(*part, given, tuple(found), _memory(offsets, *part, d))
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(offsets, closed, tolerances, joined, *found)
+    return BatchedInterpolation(offsets, closed, tolerances, joined, found)
 
 
 def filled(count: int, value: float) -> FloatArray:
@@ -68,19 +68,6 @@ def filled(count: int, value: float) -> FloatArray:
     array = np.empty(count)
     array.fill(value)
     return array
-
-
-def empty_results(total: int, count: int, closed: bool, d: int) -> tuple[Any, ...]:
-    """Empty arrays for knots, control points, parameters, intervals, vertices kept, whole numbers and rates."""
-    return (
-        np.empty(total + count if closed else total),
-        np.empty((total if closed else total + 2 * count, d)),
-        np.empty(total),
-        np.empty((total, 2)),
-        np.empty(total, dtype=np.int64),
-        np.empty((count, 6), dtype=np.int64),
-        np.empty(count),
-    )
 
 
 def _memory(offsets: IntArray, first: int, stop: int, d: int) -> FloatArray:

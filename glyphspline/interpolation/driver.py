@@ -110,7 +110,7 @@ def _intervals(
         variant = 2 if method.variant == 4 else method.variant
         same = replace(method, variant=variant, knots=None, max_iterations=0, diagnostics=False)
         shares = filled(1, method.peak_share)
-        found = run_batch(p, np.array((0, len(p))), same, shares, filled(1, np.nan), u, tangents[None])
+        found = run_batch(p, np.array((0, len(p))), same, shares, filled(1, np.nan), u, tangents[None]).arrays
         return Intervals(found.bounds[free], int(found.whole[0, 3]), float(found.rates[0]))
     first = free - ((method.degree + 1) // 2 if method.closed else 2)
     order = method.degree + 2
@@ -149,7 +149,9 @@ class Problem:
         self.P = q = (p - self.origin) * self.unit
         natural, base = np.zeros(2), np.zeros((2, p.shape[1]))
         if tangents is not None and not self.closed:
-            natural, base = _ends(q, np.diff(u) * self.knot_unit, tangents * (self.unit / self.knot_unit))
+            natural, base = controls_beside_ends(
+                q, np.diff(u) * self.knot_unit, tangents * (self.unit / self.knot_unit)
+            )
             beside = base + natural[:, None] * q[[1, -2]]
             self.P = np.concatenate([q[:1], beside[:1], q[1:-1], beside[1:], q[-1:]])
         spans, bounds, u = len(u) - 1, self.knot_unit * intervals.bounds, self.knot_unit * u
@@ -234,8 +236,12 @@ class Problem:
         return A
 
 
-def _ends(q: FloatArray, h: FloatArray, tangents: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Weights and rests of the control points beside the ends: base + weight times the free one next to them."""
+def controls_beside_ends(q: FloatArray, h: FloatArray, tangents: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Weights and rests of the control points beside the ends: base + weight times the free one next to them.
+
+    With a tangent τ that of the first end is fixed at q_0 + h_0/3 τ. A natural end (C'' = 0) keeps it on the line from
+    q_0 to the first free point, at h_0/(2 h_0 + h_1) of the way, as clamped knots have it.
+    """
     natural, base = natural_weights(h, tangents), np.zeros((2, q.shape[1]))
     for end, (near, beyond, sign) in enumerate(((0, 1, 1.0), (-1, -2, -1.0))):
         if not np.isnan(tangents[end]).any():

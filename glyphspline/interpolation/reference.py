@@ -19,10 +19,10 @@ from numpy.typing import ArrayLike
 from ..curves.bezier import derivative_points
 from ..curves.bspline import Spline, full_knots
 from ..types import FloatArray, IntArray
-from .driver import diagnose, iterate
+from .driver import controls_beside_ends, diagnose, iterate
 from .intervals import BISECTIONS, END_MARGIN, Intervals, search_intervals
 from .method import PEAK_SHARE, SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Parametrisation, Tangents
-from .polygon import clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
+from .polygon import as_tangents, clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
 from .result import Interpolation
 
 NEARLY_REAL = 0.05
@@ -175,36 +175,17 @@ def prepare(
     else:
         u, centres, vertices = s, s, np.arange(1, len(p) - 1)
         first = vertices - 2
-        spread, fixed = _clamped_ends(p, u, end_tangents or (None, None))
+        spread, fixed = np.zeros((len(p) + 2, len(vertices))), np.zeros((len(p) + 2, p.shape[1]))
+        np.fill_diagonal(spread[2:-2], 1.0)
+        natural, fixed[[1, -2]] = controls_beside_ends(p, np.diff(u), as_tangents([end_tangents], p.shape[1])[0])
+        fixed[[0, -1]] = p[[0, -1]]
+        if len(vertices):
+            spread[[1, -2], [0, -1]] = natural
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
     intervals = (search_intervals if closed else partial(_arc_intervals, u, spread))(
         windows, centres[vertices], variant, margin, fallback
     )
     return Problem(p, vertices, u, degree, closed, centres, intervals, spread, fixed, merged)
-
-
-def _clamped_ends(p: FloatArray, u: FloatArray, tangents: Tangents) -> tuple[FloatArray, FloatArray]:
-    """``spread`` and ``fixed`` of an open arc, whose first and last two control points follow from the ends.
-
-    With a tangent τ the second point is fixed at p_0 + (u_1 - u_0)/3 τ. A natural end (C'' = 0) keeps it on the
-    line from p_0 to the first free point, at h_1/(2 h_1 + h_2) of the way, as clamped knots have it.
-    """
-    m = len(p)
-    spread, fixed = np.zeros((m + 2, max(m - 2, 0))), np.zeros((m + 2, p.shape[1]))
-    np.fill_diagonal(spread[2:-2], 1.0)
-    h = np.diff(u)
-    for end, second, free, near, beyond, sign in ((0, 1, 0, 0, 1, 1.0), (m + 1, m, m - 3, -1, -2, -1.0)):
-        tangent = tangents[0 if sign > 0 else 1]
-        fixed[end] = p[near]
-        if tangent is not None:
-            fixed[second] = p[near] + sign * h[near] / 3 * np.asarray(tangent, dtype=np.float64)
-        elif m == 2:
-            fixed[second] = p[near] + (p[beyond] - p[near]) / 3
-        else:
-            weight = h[near] / (2 * h[near] + h[beyond])
-            fixed[second] = (1 - weight) * p[near]
-            spread[second, free] = weight
-    return spread, fixed
 
 
 def _arc_intervals(

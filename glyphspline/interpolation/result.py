@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,17 +66,13 @@ class Interpolation:
         return float(self.residuals[-1])
 
 
-@dataclass(frozen=True, eq=False)
-class BatchedInterpolation:
-    """Results for K polygons as concatenated arrays; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+class Found(NamedTuple):
+    """Results for K polygons with N vertices, which the compiled driver writes; parts as the polygons' ``offsets``.
 
+    Of polygon k the knots begin at its offset, plus k if closed; its control points at its offset, plus 2 k if open.
     Where duplicates were merged, or a polygon was refused, the rest of its part is undefined.
 
     Attributes:
-        offsets: (K + 1,) of the points. Of polygon k, if closed, the knots begin at ``offsets[k] + k``; if open, the
-            control points at ``offsets[k] + 2 k``.
-        closed: all polygons, or none.
-        tolerances: (K,) residual tolerances. residuals: (iterations + 1) numbers a polygon, end to end.
         knots, controls, parameters, bounds: as :class:`Interpolation` has them.
         kept: indices of the vertices that were not merged.
         whole: (K, 6) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, the
@@ -84,10 +80,6 @@ class BatchedInterpolation:
         rates: (K,) rate bounds.
     """
 
-    offsets: IntArray
-    closed: bool
-    tolerances: FloatArray
-    residuals: FloatArray
     knots: FloatArray
     controls: FloatArray
     parameters: FloatArray
@@ -96,18 +88,43 @@ class BatchedInterpolation:
     whole: IntArray
     rates: FloatArray
 
+    @classmethod
+    def empty(cls, total: int, count: int, closed: bool, d: int) -> Found:
+        """Arrays for ``count`` polygons with ``total`` vertices in R^d."""
+        return cls(
+            np.empty(total + count * closed), np.empty((total + 2 * count * (not closed), d)), np.empty(total),
+            np.empty((total, 2)), np.empty(total, dtype=np.int64), np.empty((count, 6), dtype=np.int64),
+            np.empty(count),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class BatchedInterpolation:
+    """Results for K polygons as concatenated arrays; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+
+    Attributes:
+        offsets: (K + 1,) of the points. closed: all polygons, or none. arrays: the results.
+        tolerances: (K,) residual tolerances. residuals: (iterations + 1) numbers a polygon, end to end.
+    """
+
+    offsets: IntArray
+    closed: bool
+    tolerances: FloatArray
+    residuals: FloatArray
+    arrays: Found
+
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
     @property
     def last_residuals(self) -> FloatArray:
         """(K,) the residuals of the results; undefined for polygons that were refused."""
-        return self.residuals[np.cumsum(self.whole[:, 2] + 1) - 1]
+        return self.residuals[np.cumsum(self.arrays.whole[:, 2] + 1) - 1]
 
     def __getitem__(self, k: int) -> Interpolation:
         """The result of polygon k; its arrays are views."""
         k = range(len(self))[k]
-        return next(self._results(k, int(self.whole[:k, 2].sum()) + k))
+        return next(self._results(k, int(self.arrays.whole[:k, 2].sum()) + k))
 
     def results(self) -> list[Interpolation]:
         """All polygons' results; None stands for one that was refused."""
@@ -115,8 +132,8 @@ class BatchedInterpolation:
 
     def _results(self, k: int, first: int) -> Iterator[Any]:
         """Results from polygon k on, whose residuals begin at ``first``."""
-        offsets, whole = self.offsets[k:].tolist(), self.whole[k:].tolist()
-        tolerances, rates, closed = self.tolerances[k:].tolist(), self.rates[k:].tolist(), self.closed
+        found, closed, tolerances = self.arrays, self.closed, self.tolerances[k:].tolist()
+        offsets, whole, rates = self.offsets[k:].tolist(), found.whole[k:].tolist(), found.rates[k:].tolist()
         for start, stop, row, tolerance, rate in zip(offsets, offsets[1:], whole, tolerances, rates, strict=False):
             status, n, iterations, fallbacks, _, uncertified = row
             if status:
@@ -125,13 +142,13 @@ class BatchedInterpolation:
                 u, P, vertices = start + k * closed, start + 2 * k * (not closed), slice(start, start + n)
                 merged = NOTHING_MERGED
                 if n < stop - start:
-                    merged = np.setdiff1d(np.arange(stop - start), self.kept[vertices])
+                    merged = np.setdiff1d(np.arange(stop - start), found.kept[vertices])
                 residuals = self.residuals[first : first + iterations + 1]
                 spline = Spline.trusted(
-                    self.controls[P : P + n + 2 * (not closed)], self.knots[u : u + n + closed], 3, closed
+                    found.controls[P : P + n + 2 * (not closed)], found.knots[u : u + n + closed], 3, closed
                 )
                 yield Interpolation(
-                    spline, self.parameters[vertices], self.bounds[vertices], iterations, residuals,
+                    spline, found.parameters[vertices], found.bounds[vertices], iterations, residuals,
                     float(residuals[-1]) < tolerance, fallbacks, rate, merged, uncertified,
                 )  # fmt: skip
             k, first = k + 1, first + iterations + 1

@@ -86,7 +86,7 @@ def read(results: Results) -> None:
 
 
 def _footpoints(result: BatchedInterpolation) -> int:
-    return int(((result.whole[:, 2] + 1) * result.whole[:, 1]).sum())
+    return int(((result.arrays.whole[:, 2] + 1) * result.arrays.whole[:, 1]).sum())
 
 
 def against_reference() -> list[Row]:
@@ -101,7 +101,7 @@ def against_reference() -> list[Row]:
         },
         rounds=9,
     )
-    assert plain.iterations == ours.whole[0, 2]
+    assert plain.iterations == ours.arrays.whole[0, 2]
     a, b = times["ours"] / _footpoints(ours), times["roots"] / (4 * 20)
     return [ratio("variant 2 footpoint against the `numpy.roots` reference", b, a, 2000, 3500)]
 

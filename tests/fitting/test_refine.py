@@ -43,10 +43,10 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     places = np.linspace(0, len(canonical.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
     found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options())
-    pieces, written = beziers(found.controls, found.knots, offsets, 100.0)
+    pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 100.0)
     np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
-    measured = steps.measured(canonical, which, places, offsets, found.controls, written, near)
+    measured = steps.measured(canonical, which, places, offsets, found.arrays.controls, written, near)
     bounds = measured.bounds
     bound, gap = steps.sharpened(written, canonical.cubics, bounds, measured.gaps, measured.ends, 0.01)
     truth = true_distance(gs.Contour.from_segments(written), contour)

@@ -180,7 +180,10 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     exact, _ = refit(chains, pieces, np.ones(len(pieces.spans), dtype=np.bool_), np.empty(0), SETTINGS)
     assembly = put_together(exact, 0, len(contours), np.empty(0), np.empty((0, 2)), chords(exact))
     curve = assembly.curves
-    bounds, _ = certify(chains, exact, assembly.segments, curve, 0.01, 1.0)
+    unknown = np.full(len(exact.spans), np.nan)
+    bounds, _, _ = certify(
+        chains, exact, assembly.segments, all_cubics(curve)[None], curve.offsets, None, 0.01, 1.0, unknown
+    )
     assert bounds.max() < 1e-9
     assert len(curve.degrees) == sum(map(len, contours))
     none = np.zeros(len(contours) + 1, dtype=np.int64)

@@ -169,7 +169,7 @@ def test_cusps_and_repeated_places_are_certified() -> None:
         p[4:8] = p[[4, 5, 4, 5]] + 10.0 ** rng.uniform(-9, -1) * rng.normal(size=(4, p.shape[1]))
         batch = interpolate_batch(p, np.array([0, len(p)]), Method(1, max_iterations=25))
         alone = interpolate_any_degree(p, Method(1, max_iterations=25))
-        searched += int(batch.whole[0, 4])
+        searched += int(batch.arrays.whole[0, 4])
         assert batch[0].uncertified == 0
         assert batch[0].iterations == alone.iterations
         np.testing.assert_allclose(batch[0].residuals, alone.residuals, rtol=1e-6, atol=1e-11)

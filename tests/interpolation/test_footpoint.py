@@ -133,7 +133,7 @@ def test_one_pass_finds_what_the_reference_finds(variant: int) -> None:
         for i in range(n):
             low, high = problem.intervals.bounds[i]
             t = footpoint(spline, p[i], problem.intervals.bounds[i], problem.centres[i])
-            ours, plain = spline(result.parameters[i]), spline(t)
+            ours, plain = spline(result.arrays.parameters[i]), spline(t)
             assert np.hypot(*(ours - p[i])) <= np.hypot(*(plain - p[i])) * (1 + 1e-12) + 1e-14
             sampled = spline(np.linspace(low, high, 400))
             assert np.hypot(*(ours - p[i])) <= np.hypot(*(sampled - p[i]).T).min() + 1e-12

@@ -59,8 +59,8 @@ def test_results_do_not_depend_on_batching(options: dict[str, Any]) -> None:
         together = interpolate_batch(np.concatenate(contours), offsets, Method(**settings), threads=1)
         for k, contour in enumerate(contours):
             alone = interpolate_batch(contour, np.array([0, len(contour)]), Method(**settings), threads=1)
-            assert together.whole[k].tolist() == alone.whole[0].tolist(), k
-            if alone.whole[0, 0]:
+            assert together.arrays.whole[k].tolist() == alone.arrays.whole[0].tolist(), k
+            if alone.arrays.whole[0, 0]:
                 continue
             a, b = together[k], alone[0]
             assert a.rate_bound == b.rate_bound

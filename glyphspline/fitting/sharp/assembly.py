@@ -9,10 +9,9 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import spline_beziers
 from ...curves.nearest import near_places
-from ...curves.pairing import pair_instances, pair_stretches
+from ...curves.pairing import pair_instances
 from ...curves.slip import regular
 from ...outlines.contour_arrays import ContourArrays, Polylines
-from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
 from .cutting import Chains
 from .pieces import Pieces
@@ -81,28 +80,31 @@ def put_together(
 
 
 @compiled
-def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours: Chains) -> FloatArray:
+def find_anchors(
+    V: int, pieces: Pieces, results: FloatArray, offsets: IntArray, sources: FloatArray, source_offsets: IntArray
+) -> FloatArray:
     """(spans + C, 2) places on curves and on their sources where every span begins, and where every contour ends.
 
     A knot is paired with the point of the outline nearest to it, sought near the place of its vertex.
 
     Args:
-        cubics: of all curves as they are written. offsets: (C + 1,) where each contour begins in them.
+        results: (r V, 4, 2) all curves in V instances; offsets: (C + 1,) where each contour begins in them. sources:
+            (m V, 4, 2), likewise.
     """
-    anchors = np.empty((len(cubics) + len(offsets) - 1, 2))
+    anchors = np.empty((len(results) // V + len(offsets) - 1, 2))
     at = 0
     for q in range(len(pieces.spans)):
         c, k, closed = pieces.contour[q], max(pieces.spans[q], 1), pieces.closed[q]
-        outline = contours.cubics[0, contours.offsets[c] : contours.offsets[c + 1]]
+        outline = sources[V * source_offsets[c] : V * source_offsets[c + 1]]
         own = pieces.places[pieces.starts[q] : pieces.starts[q + 1]]
-        m = len(outline)
+        m = len(outline) // V
         end = own[0] + m if closed else own[k]
         for s in range(k):
             anchors[at + c + s, 0], anchors[at + c + s, 1] = at - offsets[c] + s, own[s]
         if closed or k > 1:
             s = 0 if closed else 1  # an arc begins where the source's does
             places = anchors[at + c + s : at + c + k, 1]
-            near_places(1, outline, own[s:k], cubics[at + s : at + k], closed > 0, own[0], end, places)
+            near_places(V, outline, own[s:k], results[V * (at + s) : V * (at + k)], closed > 0, own[0], end, places)
         anchors[at + c + k, 0] = at - offsets[c] + k
         anchors[at + c + k, 1] = anchors[at + c, 1] + m if closed else end
         if closed and anchors[at + c, 1] < 0.0:
@@ -113,68 +115,40 @@ def find_anchors(pieces: Pieces, cubics: FloatArray, offsets: IntArray, contours
 
 
 def certify(
-    contours: Chains, pieces: Pieces, segments: IntArray, written: ContourArrays, sharpness: float, limit: float
-) -> tuple[FloatArray, FloatArray]:
-    """(P,) certified bound between each piece, as written, and its stretch of contour; and the largest gap seen.
+    contours: Chains, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
+    mixes: FloatArray | None, sharpness: float, limit: float, known: FloatArray,
+) -> tuple[FloatArray, FloatArray, BoolArray]:  # fmt: skip
+    """(P,) certified bound between each piece and its stretch of contour, of masters in the whole design space; the
+    largest gap seen; and whether the curves of masters have speed everywhere.
 
     Every span is paired on its own: a long piece paired as a whole may lose its way.
 
     Args:
-        segments: see :class:`Assembly`. written: the curves, rounded.
+        segments: see :class:`Assembly`. curves: (K, M, 4, 2) the curves in all masters, or a plain outline's as they
+            are written; offsets: (C + 1,) where each contour begins in them.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline.
         sharpness, limit: see :func:`...curves.pairing.pair_stretches`.
+        known: (P,) bounds of pieces that are not measured again; NaN for the others.
     """
-    cubics, ends = all_cubics(written), written.offsets + np.arange(len(written.offsets))
-    anchors = find_anchors(pieces, cubics, written.offsets, contours)
-    bounds, gaps = pair_stretches(
-        cubics, written.offsets, contours.cubics[0], contours.offsets, anchors, ends, sharpness, limit
-    )
-    return np.maximum.reduceat(bounds, segments[:-1]), np.maximum.reduceat(gaps, segments[:-1])
-
-
-def certify_masters(
-    contours: Chains, pieces: Pieces, segments: IntArray, curves: FloatArray, offsets: IntArray,
-    mixes: FloatArray, limit: float, bounds: FloatArray, speed: BoolArray,
-) -> None:  # fmt: skip
-    """Certify pieces in a whole design space.
-
-    Args:
-        curves: (K, M, 4, 2) the curves in all masters; offsets: (C + 1,) where each contour begins in them.
-        mixes: (V, K) weights of the masters at the corners of the design space's grid.
-        bounds: (P,) receives the certified bounds of those pieces for which it is NaN.
-        speed: (P,) receives whether their curves have speed everywhere.
-    """
-    V = len(mixes)
-    results, sources = (
-        np.einsum("vk,kmpc->mvpc", mixes, cubics).reshape(-1, 4, 2) for cubics in (curves, contours.cubics)
-    )
-    first = pieces.starts[:-1]
-    spans = np.diff(segments)
-    for c, a, b in zip(range(len(offsets) - 1), offsets[:-1], offsets[1:], strict=True):
-        own = np.flatnonzero(pieces.contour == c)
-        wanted = np.isnan(bounds[own])
-        if not wanted.any():
-            continue
-        source = sources[V * contours.offsets[c] : V * contours.offsets[c + 1]]
-        result, m, r = results[V * a : V * b], len(source) // V, b - a
-        closed = bool(pieces.closed[own[0]])
-        places, arcs = np.empty(r), np.empty((r, 4))
-        for q, look in zip(own, wanted, strict=True):
-            s, e = segments[q] - a, segments[q + 1] - a
-            low, high = pieces.joints[q].astype(np.float64).tolist()
-            arcs[s:e] = (-np.inf, np.inf, -np.inf, np.inf) if closed else (s, e, low, high)
-            places[s:e] = pieces.places[first[q] : first[q] + e - s]
-            inner = s if closed else s + 1  # an arc begins where the source's does
-            if look and inner < e:
-                begins = result[V * inner : V * e]
-                near_places(V, source, places[inner:e], begins, closed, low, high, places[inner:e])
-        if closed:
-            places += m * np.ceil(max(-places[0], 0.0) / m)
-        anchors = np.stack([np.arange(r + 1.0), np.append(places, places[0] + m)], axis=1)
-        each = np.repeat(wanted, spans[own])
-        found = np.where(each, np.nan, 0.0)
-        ends = [np.array([0, count]) for count in (r, m, r + 1)]
-        pair_instances(V, result, ends[0], source, ends[1], anchors, ends[2], arcs, 0.0, limit, found, np.zeros(r))
-        good = regular(result.reshape(r, V, 4, 2)[each])
-        starts = np.cumsum(spans[own][wanted]) - spans[own][wanted]
-        bounds[own[wanted]] = np.maximum.reduceat(found[each], starts)
-        speed[own[wanted]] = np.logical_and.reduceat(good, starts)
+    V, spans, arcs = 1, np.diff(segments), np.empty((0, 4))
+    results, sources = curves[0], contours.cubics[0]
+    if mixes is not None:
+        V, own = len(mixes), offsets[pieces.contour]
+        results, sources = (
+            np.einsum("vk,kmpc->mvpc", mixes, cubics).reshape(-1, 4, 2) for cubics in (curves, contours.cubics)
+        )
+        ends = np.stack([segments[:-1] - own, segments[1:] - own, *pieces.joints.T], axis=1).astype(np.float64)
+        ends[pieces.closed > 0] = (-np.inf, np.inf, -np.inf, np.inf)
+        arcs = np.repeat(ends, spans, axis=0)
+    anchors = find_anchors(V, pieces, results, offsets, sources, contours.offsets)
+    bounds, gaps = np.repeat(known, spans), np.zeros(int(segments[-1]))
+    wanted = np.isnan(bounds)
+    pair_instances(
+        V, results, offsets, sources, contours.offsets, anchors, offsets + np.arange(len(offsets)), arcs, sharpness,
+        limit, bounds, gaps,
+    )  # fmt: skip
+    speed = np.ones(len(wanted), dtype=np.bool_)
+    if mixes is not None:
+        speed[wanted] = regular(results.reshape(-1, V, 4, 2)[wanted])
+    first = segments[:-1]
+    return np.maximum.reduceat(bounds, first), np.maximum.reduceat(gaps, first), np.logical_and.reduceat(speed, first)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.cubics import length, newton_step
 from ...types import FloatArray, IntArray
 from .corners import Joints
@@ -90,7 +90,7 @@ def fit_cubic(
     return best
 
 
-@compiled
+@inlined
 def limited(
     ax: float, ay: float, bx: float, by: float, shortest: float, longest: float
 ) -> tuple[float, float, float]:  # fmt: skip

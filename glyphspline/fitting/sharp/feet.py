@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.cubics import jet, length, newton_step
 from ...types import FloatArray, IntArray
 from .spline_curve import SHORT, Curve
@@ -141,7 +141,7 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
     return worst
 
 
-@compiled
+@inlined
 def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
     """Measure a curve without first guesses."""
     rows.used[:] = 0
@@ -229,7 +229,7 @@ def _foot(
     return s, at, e, nx, ny
 
 
-@compiled
+@inlined
 def _distance(b: FloatArray, k: int, s: int, at: float, qx: float, qy: float) -> tuple[float, float, float]:
     """The distance of (qx, qy) from a point of the curve, positive on its left, and the normal there."""
     cx, cy, dx, dy, _, _ = jet(b, _wrapped(s, k), at)
@@ -238,7 +238,7 @@ def _distance(b: FloatArray, k: int, s: int, at: float, qx: float, qy: float) ->
     return (away if ex * nx + ey * ny > 0 else -away), nx, ny
 
 
-@compiled
+@inlined
 def _wrapped(s: int, k: int) -> int:
     """The span of a closed curve that span s is, up to a lap before the first one and two laps after it."""
     if s >= k:
@@ -252,12 +252,10 @@ def _wrapped(s: int, k: int) -> int:
 def copy_rows(source: Rows, target: Rows) -> None:
     """Copy the rows in use."""
     for v in range(len(source.used)):
-        count = target.used[v, 0] = source.used[v, 0]
-        for r in range(count):
-            target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
-            target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
-        for j in range(source.slip.shape[1]):
-            target.slip[v, j], target.lever[v, j] = source.slip[v, j], source.lever[v, j]
+        n = target.used[v, 0] = source.used[v, 0]
+        target.span[v, :n], target.x[v, :n], target.e[v, :n] = source.span[v, :n], source.x[v, :n], source.e[v, :n]
+        target.nx[v, :n], target.ny[v, :n] = source.nx[v, :n], source.ny[v, :n]
+    target.slip[:], target.lever[:] = source.slip, source.lever
 
 
 @compiled

@@ -24,7 +24,7 @@ from ..ladders import RETRIES, SHARP_TRIES
 from ..measures import Columns, distance_columns
 from ..options import Options
 from ..results import ConvertedContours
-from .assembly import certify, certify_masters, put_together
+from .assembly import certify, put_together
 from .cutting import Chains, fit_contours, refit
 from .pieces import Pieces
 from .settings import EFFORTS
@@ -97,9 +97,8 @@ class SharpFit:
         splines: the interpolations of those arcs that have more than one span, by their piece.
         curves: the contours they make in each master, before rounding. controls: the control polygons of all arcs.
         bounds: (P,) certified distance of each piece from the source: of a plain outline as it is written, and of
-            masters, unrounded, in the whole design space. gaps: (P,) the largest one seen; NaN for masters.
-        regular: (P,) whether the curves of masters have speed everywhere, in the whole design space; None for a plain
-            outline.
+            masters, unrounded, in the whole design space. gaps: (P,) the largest one seen; 0 for masters.
+        regular: (P,) whether the curves of masters have speed everywhere, in the whole design space.
     """
 
     pieces: Pieces
@@ -109,7 +108,7 @@ class SharpFit:
     controls: tuple[Polylines, ...]
     bounds: FloatArray
     gaps: FloatArray
-    regular: BoolArray | None
+    regular: BoolArray
 
     def interpolations(self) -> list[Interpolation]:
         """All arcs of a single master; one of a single span interpolates its two ends as it is."""
@@ -180,26 +179,24 @@ def _certified(
         before: a fit that has some of the pieces. same: (P,) their numbers in it; -1 for the others.
     """
     count, masters = len(chains.flipped), len(chains.cubics)
-    known = {} if before is None else {q: before.splines[n] for q, n in enumerate(same.tolist()) if n in before.splines}
-    splines = dict(sorted((known | _interpolated(pieces, same < 0, options)).items()))
+    old = {} if before is None else {q: before.splines[n] for q, n in enumerate(same.tolist()) if n in before.splines}
+    splines = dict(sorted((old | _interpolated(pieces, same < 0, options)).items()))
     knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
     stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
     controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
     lengths = chords(pieces)
     made = [put_together(pieces, v, count, knots, controls[v], lengths) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
-    regular = None
-    if mixes is None:
-        written = curves[0].rounded(options.precision)
-        bounds, gaps = certify(chains, pieces, segments, written, SHARPNESS * tolerance, tolerance)
-    else:
-        cubics = np.stack([all_cubics(curve) for curve in curves])
-        bounds, regular = np.full(len(same), np.nan), np.zeros(len(same), dtype=np.bool_)
-        if before is not None:
-            assert before.regular is not None
-            bounds[same >= 0], regular[same >= 0] = before.bounds[same[same >= 0]], before.regular[same[same >= 0]]
-        certify_masters(chains, pieces, segments, cubics, curves[0].offsets, mixes, tolerance, bounds, regular)
-        gaps = np.full(len(bounds), np.nan)
+    known, kept = np.full(len(same), np.nan), same >= 0
+    if before is not None and mixes is not None:
+        known[kept] = before.bounds[same[kept]]
+    cubics = np.stack([all_cubics(curve.rounded(options.precision) if mixes is None else curve) for curve in curves])
+    bounds, gaps, regular = certify(
+        chains, pieces, segments, cubics, curves[0].offsets, mixes, SHARPNESS * tolerance if mixes is None else 0.0,
+        tolerance, known,
+    )  # fmt: skip
+    if before is not None:
+        regular[kept] = before.regular[same[kept]]
     offsets = np.searchsorted(pieces.contour, np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, newton_step
-from ...interpolation.kernels.lemma2 import add_fixed, margin_at, one_interval
+from ...interpolation.kernels.lemma2 import add_fixed, one_interval
 from ...types import FloatArray, IntArray
 
 SHORT = 0.01
@@ -77,21 +77,10 @@ def empty_curve(masters: int, most: int, closed: int) -> Curve:
 def copy_curve(source: Curve, target: Curve) -> None:
     """Copy what is in use of a curve into the arrays of another one of the same kind."""
     k = target.size[0] = source.size[0]
-    for i in range(k + 4):
-        target.h[i] = source.h[i]
-    for i in range(k + 1):
-        target.t[i], target.bounds[i, 0], target.bounds[i, 1] = source.t[i], source.bounds[i, 0], source.bounds[i, 1]
-        for r in range(4):
-            for c in range(4):
-                target.W[i, r, c] = source.W[i, r, c]
-    for v in range(len(source.X)):
-        for axis in range(2):
-            for i in range(k + 3):
-                target.X[v, i, axis] = source.X[v, i, axis]
-            for i in range(k + 1):
-                target.p[v, i, axis] = source.p[v, i, axis]
-                for r in range(4):
-                    target.b[v, i, r, axis] = source.b[v, i, r, axis]
+    target.h[: k + 4], target.W[: k + 1] = source.h[: k + 4], source.W[: k + 1]
+    target.t[: k + 1], target.bounds[: k + 1] = source.t[: k + 1], source.bounds[: k + 1]
+    target.X[:, : k + 3], target.p[:, : k + 1] = source.X[:, : k + 3], source.p[:, : k + 1]
+    target.b[:, : k + 1] = source.b[:, : k + 1]
 
 
 @compiled
@@ -250,8 +239,7 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
             before[r], after[r] = curve.W[last, r, 2], curve.W[i, r, 1]
         c = margin
         if not closed:
-            add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, before, after)
-            c = margin_at(i, k + 1, margin)
+            c = add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, margin, before, after)
         low, high, _, _ = one_interval(before, after, c, 1.0)
         curve.bounds[i, 0], curve.bounds[i, 1] = low, high
         curve.t[i] = min(max(0.0, low), high)

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.cubics import jet, length
 from ...types import BoolArray, FloatArray, IntArray
 from .feet import EXTRA, Rows, Samples, empty_rows
@@ -146,7 +146,7 @@ def knots_per_step(curve: Curve, v: int, i: int) -> float:
     return both / own if own * MOST_KNOTS > both else MOST_KNOTS
 
 
-@compiled
+@inlined
 def shift_knot(curve: Curve, i: int, delta: float) -> None:
     """Move knot i of the intervals, and of their repetition around a closed curve."""
     k, h = curve.size[0], curve.h
@@ -208,7 +208,7 @@ def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
                     gram[s, w, u] = gram[s, u, w]
 
 
-@compiled
+@inlined
 def ratio_excess(curve: Curve, s: int) -> float:
     """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
     # Ratios above this share of the bound are held back.
@@ -242,7 +242,7 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
     return total + wobble * thirds
 
 
-@compiled
+@inlined
 def third_along(b: FloatArray, s: int, nx: float, ny: float) -> float:
     """The third derivative of span s by its local parameter, along (nx, ny)."""
     x = b[s, 3, 0] - b[s, 0, 0] - 3 * (b[s, 2, 0] - b[s, 1, 0])
@@ -250,7 +250,7 @@ def third_along(b: FloatArray, s: int, nx: float, ny: float) -> float:
     return 6 * (x * nx + y * ny)
 
 
-@compiled
+@inlined
 def middle_normal(b: FloatArray) -> tuple[float, float]:
     """The unit normal of a cubic (4, 2) at its middle."""
     dx = b[3, 0] - b[0, 0] + b[2, 0] - b[1, 0]

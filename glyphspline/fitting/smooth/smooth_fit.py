@@ -110,7 +110,7 @@ class Gathered(NamedTuple):
             whole = slice(a + i, b + i + 1)
             parts = (
                 found.trial.places[a:b], found.trial.points[a:b], found.trial.ends[whole], found.pieces[a:b],
-                found.found.knots[whole], found.found.parameters[a:b], held,
+                found.found.arrays.knots[whole], found.found.arrays.parameters[a:b], held,
             )  # fmt: skip
             for column, part in zip(columns, parts, strict=True):
                 column.append(part)
@@ -206,7 +206,7 @@ class _Search:
             count, peaks = fairing.bends(self.contours, which[left], offsets, done.pieces)
             good = (done.most <= self.near) & (np.maximum.reduceat(peaks, offsets[:-1]) <= most[left])
             some[left[good]] = False
-            for n in np.flatnonzero(good & (count < extrema[left]) & (done.found.rates < 1)).tolist():
+            for n in np.flatnonzero(good & (count < extrema[left]) & (done.found.arrays.rates < 1)).tolist():
                 self.kept[int(which[left[n]])] = done, n
             limits[rows] = fairing.lowered(limits[rows], offsets, done.trial.bounds, self.near, peaks, most[left])
 
@@ -227,11 +227,13 @@ class _Search:
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else int(which[error.contour])
             raise
-        if found.whole[:, 1].sum() < len(places):  # duplicates were merged
-            parts = [found.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.whole[:, 1], strict=True)]
+        if found.arrays.whole[:, 1].sum() < len(places):  # duplicates were merged
+            parts = [
+                found.arrays.kept[a : a + n] + a for a, n in zip(offsets[:-1], found.arrays.whole[:, 1], strict=True)
+            ]
             kept = np.concatenate(parts)
             return self.run(which, places[kept], offsets_of([len(part) for part in parts]), points[kept])
-        pieces, written = beziers(found.controls, found.knots, offsets, 10.0**self.options.precision)
+        pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 10.0**self.options.precision)
         trial = steps.measured(self.contours, which, places, offsets, points, written, self.near)
         return Round(trial, found, pieces, written, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
 
@@ -256,7 +258,7 @@ class _Search:
             held = found.part(found.held, i) if len(found.held) else found.held
             if held.any():  # the vertex is where the curve passes by
                 points[n] = np.where(held[:, None], pieces[n][:, 0], points[n])
-        controls = [found.part(found.found.controls, i) for found, i in kept]
+        controls = [found.part(found.found.arrays.controls, i) for found, i in kept]
         offsets, closed = offsets_of([len(part) for part in pieces]), np.ones(len(kept), dtype=np.bool_)
         bounds, gaps = zip(*(self.certificate(k, tolerance) for k in range(len(kept))), strict=True)
         for n in np.flatnonzero(flipped).tolist():

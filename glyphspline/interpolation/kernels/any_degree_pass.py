@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.bspline import bezier_pieces, full_knots
 from ...types import FloatArray, IntArray
 from ..method import TIE_DISTANCE
@@ -59,7 +59,7 @@ def power_matrices(u: FloatArray, degree: int, closed: bool) -> FloatArray:
     return np.stack(rows, axis=1)
 
 
-@compiled
+@inlined
 def _coefficients(span: int, P: FloatArray, p: FloatArray, v: Layout, b: FloatArray) -> None:
     """Coefficients of the piece about p: b[k] of (t - start)^k."""
     order, size = b.shape
@@ -70,7 +70,7 @@ def _coefficients(span: int, P: FloatArray, p: FloatArray, v: Layout, b: FloatAr
                 b[k, axis] += v.matrices[span, k, j] * (P[v.indices[span, j], axis] - p[axis])
 
 
-@compiled
+@inlined
 def _follow_ends(P: FloatArray, count: int, v: Layout) -> None:
     """The fixed control points beside natural ends, which follow the first and last free ones."""
     if count > 0 and v.period == 0.0:

@@ -16,6 +16,7 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...intrinsics import select
 from ...types import BoolArray, FloatArray, IntArray
+from ..result import Found
 
 LANES = 128
 HALO = 2
@@ -100,21 +101,6 @@ class Given(NamedTuple):
     held: BoolArray
 
 
-class Found(NamedTuple):
-    """Results, as :class:`..result.BatchedInterpolation` has them.
-
-    A polygon's knots begin at its offset, plus k if closed; its control points at its offset, plus 2 k if open.
-    """
-
-    knots: FloatArray
-    controls: FloatArray
-    parameters: FloatArray
-    bounds: FloatArray
-    kept: IntArray
-    whole: IntArray
-    rates: FloatArray
-
-
 class Group(NamedTuple):
     """The polygons that are iterated together: several short ones in one block, or a long one in a row of blocks.
 
@@ -150,7 +136,7 @@ def whole_vectors(count: int) -> int:
     return (count + WIDTH - 1) // WIDTH * WIDTH
 
 
-@compiled
+@inlined
 def lanes_used(group: Group, slots: int, b: int) -> int:
     """Lanes of block b from the first vertex to the last one."""
     table = group.table
@@ -159,13 +145,13 @@ def lanes_used(group: Group, slots: int, b: int) -> int:
     return table[slots - 1, LANE] + table[slots - 1, COUNT]
 
 
-@compiled
+@inlined
 def pairs_size(d: int) -> int:
     """Numbers in an array of coordinates for a block."""
     return (d + 1) // 2 * PAIR
 
 
-@compiled
+@inlined
 def count_of_blocks(group: Group) -> int:
     """Number of blocks of a group."""
     return (group.table[0, COUNT] + LANES - 1) // LANES

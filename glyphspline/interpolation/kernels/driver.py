@@ -9,21 +9,23 @@ stored, and the lanes of the others are compacted.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from ...arrays import grown
 from ...compiled import compiled, inlined
 from ...intrinsics import select
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import FloatArray, IntArray
 from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX
 from ..polygon import SMALLEST as SMALLEST_EXTENT
+from ..result import Found
 from .blocks import (
     BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST,
     LIMIT, LOW, NATURAL, ONE, ORDER, PAD, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO,
-    UNCERTIFIED, UNIT, WIDTH, Coordinates, Found, Given, Group, X, close_ranks, count_of_blocks, fill_halos,
+    UNCERTIFIED, UNIT, WIDTH, Coordinates, Given, Group, X, close_ranks, count_of_blocks, fill_halos,
     follow_ends, lanes_used, pairs_size, place, whole_vectors,
 )  # fmt: skip
 from .certificate import GIVEN_UP, flagged
@@ -44,23 +46,17 @@ STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHES, GIVEN_UP_ON = range(6)
 
 @compiled
 def run(
-    k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray, closed: bool,
-    variant: int, margin: float, exponent: float, peak_shares: FloatArray, tolerances: FloatArray, max_iterations: int,
-    settled: float, held: BoolArray, knots: FloatArray, controls: FloatArray, parameters: FloatArray,
-    bounds: FloatArray, kept: IntArray, whole: IntArray, rates: FloatArray, memory: FloatArray,
+    k0: int, k1: int, of_given: tuple[Any, ...], of_found: tuple[Any, ...], memory: FloatArray
 ) -> FloatArray:  # fmt: skip
     """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
 
     Args:
-        points, …, held: as :class:`Given` has them. knots, …, rates: as :class:`Found` has them.
+        of_given, of_found: the values of :class:`Given` and of :class:`Found`: plain tuples, whose types Numba finds
+            in a fraction of the time.
         memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
     """
-    given = Given(
-        points, offsets, own_knots, tangents, closed, variant, margin, exponent, peak_shares, tolerances,
-        max_iterations, settled, held,
-    )  # fmt: skip
-    found = Found(knots, controls, parameters, bounds, kept, whole, rates)
-    d = points.shape[1]
+    given, found = Given(*of_given), Found(*of_found)
+    d, closed = given.points.shape[1], given.closed
     size = pairs_size(d)
     count = memory.shape[0] // (BLOCK + 3 * size)
     group = Group(
@@ -88,7 +84,7 @@ def run(
             h[PAD + spans + i] = h[PAD + i] if closed else 0.0
         row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[FINISHED] = k, n, lane, interval, slots, 0
         row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
-        limit = max(tolerances[k], settled * u[n - 1] / (n - 1))
+        limit = max(given.tolerances[k], given.settled * u[n - 1] / (n - 1))
         own[UNIT], own[KNOT_UNIT], own[LIMIT] = unit, knot_unit, limit * unit
         slots, lane, interval = slots + 1, lane + n + 2 * HALO, interval + n + 2 * PAD
     if slots > 0:
@@ -159,10 +155,14 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
         if wild > 0:
             _pass_over(group, block, S, slots, b)
         searched = flagged(block, P, Q, N, S, d, m) if bad > 0 else 0
-        if given.held.shape[0] > 0:
-            _hold(given, found, group, block, Q, N, slots, b)
         for q in range(slots):
             first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
+            start = given.offsets[group.table[q, POLYGON]]
+            for i in range(n if given.held.shape[0] > 0 else 0):  # control points of held vertices stay at them
+                if given.held[start + found.kept[start + b * LANES + i]]:
+                    for axis in range(d):
+                        N[first + i + axis * STRIDE] = Q[first + i + axis * STRIDE]
+                    block[DD + np.uint64(first + i)] = 0.0
             for i in range(n if searched > 0 else 0):
                 mark = S[BAD + np.uint64(first + i)]
                 group.table[q, SEARCHED] += mark >= MARK
@@ -173,21 +173,6 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
             numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
-
-
-@compiled
-def _hold(
-    given: Given, found: Found, group: Group, block: FloatArray, Q: FloatArray, N: FloatArray, slots: int, b: int
-) -> None:  # fmt: skip
-    """Keep the control points of held vertices of block b at them, without an error."""
-    for q in range(slots):
-        first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
-        start = given.offsets[group.table[q, POLYGON]]
-        for i in range(n):
-            if given.held[start + found.kept[start + b * LANES + i]]:
-                for axis in range(given.points.shape[1]):
-                    N[first + i + axis * STRIDE] = Q[first + i + axis * STRIDE]
-                block[DD + np.uint64(first + i)] = 0.0
 
 
 @compiled
@@ -310,7 +295,7 @@ def _power_of_two(x: float) -> float:
     return math.ldexp(1.0, 1 - math.frexp(x)[1])
 
 
-@compiled
+@inlined
 def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
     """The knots of polygon k."""
     first = given.offsets[k] + (k if given.closed else 0)

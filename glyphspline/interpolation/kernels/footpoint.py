@@ -136,7 +136,7 @@ def shift(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
                 u[i] += y * u[i + 1]
 
 
-@compiled
+@inlined
 def expand(c: FloatArray, d: int, y: float, work: FloatArray) -> None:
     """Coefficients of q about y, and those of |q|², into their rows of ``work``."""
     shift(c, d, y, work)
@@ -230,7 +230,7 @@ def local_minimum(c: FloatArray, d: int, low: float, high: float, y: float) -> f
     return y
 
 
-@compiled
+@inlined
 def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: float) -> tuple[float, float]:
     """The nearer of two candidates (parameter, squared distance); in a tie the one nearer ``centre``."""
     if new_D < D * (1 - EQUAL) - tie:

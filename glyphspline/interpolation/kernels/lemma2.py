@@ -13,13 +13,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...intrinsics import fma, select, wide_vectors
 from ...types import FloatArray
 from ..intervals import END_MARGIN
+from ..result import Found
 from .blocks import (
     BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, NATURAL, ONE, PAD, POLYGON, STRIDE, THREE,
-    TWO, WIDTH, Found, Given, Group, X, lanes_used, whole_vectors,
+    TWO, WIDTH, Given, Group, X, count_of_blocks, lanes_used, whole_vectors,
 )  # fmt: skip
 from .newton_simd import cubic
 
@@ -163,12 +164,10 @@ def _end_interval(
     before[1], before[2], after[1], after[2] = a * left, (a + b) * left, (c + d) * right, d * right
     before[0], after[3] = before[1] * a / (a + b), after[2] * d / (c + d)
     before[3] = after[0] = (1.0 - k) * before[2] + k * after[1]
-    add_fixed(h, 1, i, n, row[NATURAL], row[NATURAL + 1], before, after)
+    margin = add_fixed(h, 1, i, n, row[NATURAL], row[NATURAL + 1], given.margin, before, after)
     if given.variant == 3:
         return low, high, before[3], missing
-    first, last, least, found = one_interval(
-        before, after, margin_at(i, n, given.margin), share if share > 0.0 else 1.0
-    )
+    first, last, least, found = one_interval(before, after, margin, share if share > 0.0 else 1.0)
     if not found:
         return low, high, value, missing
     return first * (b if first < 0.0 else c), last * (b if last < 0.0 else c), least, False
@@ -183,7 +182,7 @@ def fill_intervals(given: Given, found: Found, group: Group, slots: int) -> None
     S = group.scratch
     for q in range(slots):
         group.table[q, FALLBACKS], group.numbers[q, LEAST] = 0, 1.0
-    for b in range((group.table[0, COUNT] + LANES - 1) // LANES):
+    for b in range(count_of_blocks(group)):
         block, at = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * LANES
         if given.variant == 2:
             for q in range(slots):
@@ -221,9 +220,12 @@ def fill_intervals(given: Given, found: Found, group: Group, slots: int) -> None
 
 @compiled
 def add_fixed(
-    h: FloatArray, at: int, i: int, n: int, first: float, last: float, before: FloatArray, after: FloatArray
-) -> None:
+    h: FloatArray, at: int, i: int, n: int, first: float, last: float, margin: float, before: FloatArray,
+    after: FloatArray,
+) -> float:  # fmt: skip
     """Make W_i of B_i, for inner vertex i of an arc of n vertices; they differ for the first two and the last two.
+
+    Returns the margin of the vertex: ``END_MARGIN`` at least for the first and the last of the inner ones.
 
     Args:
         h: knot intervals; h[at] is the one before u_i.
@@ -248,9 +250,10 @@ def add_fixed(
         before[3] += c
     if i == n - 3:
         after[3] += end_shares(h[at + 2], h[at + 1], 1.0 - last)[2]
+    return max(margin, END_MARGIN) if i in (1, n - 2) else margin
 
 
-@compiled
+@inlined
 def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, float, float]:
     """Bernstein coefficients 1 to 3, on the span at an end of an arc, of half the function beside that of the end.
 
@@ -259,12 +262,6 @@ def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, flo
     """
     half, share = 0.5 * weight, beyond / (nearest + beyond)
     return half, half * share, half * share * share
-
-
-@compiled
-def margin_at(i: int, n: int, margin: float) -> float:
-    """The margin of vertex i of an arc: ``END_MARGIN`` at least for the first and the last of the inner ones."""
-    return max(margin, END_MARGIN) if i in (1, n - 2) else margin
 
 
 @compiled
@@ -319,7 +316,7 @@ def _hump(c0: float, c1: float, c2: float, c3: float) -> float:
     return d0 / (d0 - d1 + np.sqrt(square))
 
 
-@compiled
+@inlined
 def _bernstein(c0: float, c1: float, c2: float, c3: float, x: float) -> float:
     y = 1 - x
     return y * y * (y * c0 + 3 * x * c1) + x * x * (3 * y * c2 + x * c3)
