@@ -498,11 +498,7 @@ def attacks(cases: int, checks: int, seed: int) -> list[tuple[str, int, int, int
 
 def main() -> int:
     """Attack both searches; exit status 1 if there is a miss beyond the bound."""
-    options = parser(__doc__)
-    options.add_argument("--cases", type=int, default=4_000_000)
-    options.add_argument("--checks", type=int, default=8_000, help="cases compared in 60 digits")
-    options.add_argument("--seed", type=int, default=2012)
-    arguments = options.parse_args()
+    arguments = parser(__doc__, jobs=2, cases=4_000_000, checks=8_000, seed=2012).parse_args()
     tasks, bad = attacks(arguments.cases, arguments.checks, arguments.seed), 0
     for found in surveyed(attack, *zip(*tasks, strict=True), jobs=arguments.jobs):
         print(found, flush=True)

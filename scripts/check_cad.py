@@ -125,13 +125,8 @@ def true_area(result: gs.GlyphResult, kind: str) -> float:
 
 def main() -> int:
     """Check, and print a line for each file; returns the exit status."""
-    options = parser(__doc__, jobs=False)
+    options = parser(__doc__, text="龍g好", height=5.0, looks=",".join(LOOKS), kinds=",".join(KINDS), brief=False)
     options.add_argument("fonts", nargs="*", default=["fonts_test/kouzan-kaisho.ttf"])
-    options.add_argument("--text", default="龍g好")
-    options.add_argument("--height", type=float, default=5.0)
-    options.add_argument("--looks", default=",".join(LOOKS))
-    options.add_argument("--kinds", default=",".join(KINDS))
-    options.add_argument("--brief", action="store_true", help="print what is bad alone")
     given = options.parse_args()
     program = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
     if not program:

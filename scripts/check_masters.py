@@ -1,6 +1,6 @@
 """Variable fonts converted in all masters at once, beside their masters one by one and their own instances.
 
-    python scripts/check_masters.py FONT... [--text TEXT] [--effort best] [--corners smooth] [--seed 1]
+    python scripts/check_masters.py FONT... [--text TEXT | --gids 5,10-20] [--effort best] [--corners smooth] [--seed 1]
 
 For each glyph: segments, certified or not, and 40 random locations, at which the result's instance is sampled densely
 and compared with the source's, both ways. Fonts with CFF2 outlines are written too, and turns at inner joints are those
@@ -17,7 +17,7 @@ import numpy as np
 import uharfbuzz as hb
 
 import glyphspline as gs
-from glyphspline.curves.bezier import as_cubic
+from glyphspline.curves.bezier import as_cubic, derivative_points, signed_curvature
 from glyphspline.curves.cubics import turns
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.runs.jobs.masters import redrawn_glyph
@@ -39,13 +39,8 @@ STEP = 0.5
 
 def main() -> None:
     """Check the fonts named on the command line."""
-    options = parser(__doc__, jobs=False)
+    options = parser(__doc__, text=TEXT, gids="", effort="fast", corners="sharp", seed=1)
     options.add_argument("fonts", nargs="+", type=Path)
-    options.add_argument("--text", default=TEXT)
-    options.add_argument("--gids", help="instead of a text, as 5,10-20")
-    options.add_argument("--effort", default="fast", choices=("fast", "best"))
-    options.add_argument("--corners", default="sharp", choices=("smooth", "sharp"))
-    options.add_argument("--seed", type=int, default=1)
     given = options.parse_args()
     for path in given.fonts:
         font = gs.open_font(path)
@@ -136,7 +131,9 @@ def drawn(font: gs.Font, redrawn: dict[str, Redrawn], rng: np.random.Generator) 
                 if len(cubics) != len(inner):
                     continue
                 worst = max(worst, largest_turn(cubics, inner, 1e-6))
-                before, after = np.roll(end_curvature(cubics[:, ::-1]), 1), -end_curvature(cubics)
+                d, dd = (derivative_points(cubics, order) for order in (1, 2))
+                first, last = (signed_curvature(d[:, end], dd[:, end]) for end in (0, -1))
+                before, after = np.roll(last, 1), first
                 size = np.maximum(np.abs(before), np.abs(after))[inner]
                 jumps += int((np.abs(before - after)[inner] > np.maximum(0.1 * size, 1e-4)).sum())
                 joints += int(inner.sum())
@@ -144,14 +141,6 @@ def drawn(font: gs.Font, redrawn: dict[str, Redrawn], rng: np.random.Generator) 
     print(f"  as HarfBuzz draws it: turn {worst:.4f}° at most, jumps over 10 % {share:.2%} of {joints}")
     if summary.left:
         print(f"  left as they were: {summary.left}")
-
-
-def end_curvature(cubics: FloatArray) -> FloatArray:
-    """(m,) signed curvature at the first point of each cubic."""
-    d, e = cubics[:, 1] - cubics[:, 0], cubics[:, 2] - cubics[:, 1]
-    speed = np.maximum(np.hypot(*d.T), 1e-12)
-    found: FloatArray = 2 / 3 * (d[:, 0] * e[:, 1] - d[:, 1] * e[:, 0]) / speed**3
-    return -found
 
 
 if __name__ == "__main__":

@@ -46,9 +46,7 @@ def check(number: int) -> tuple[str, float, str]:
 
 def main() -> int:
     """Compare ``--count`` polygons; list those that differ; exit status 1 if any does for no good reason."""
-    options = parser(__doc__)
-    options.add_argument("--count", type=int, default=5000)
-    arguments = options.parse_args()
+    arguments = parser(__doc__, jobs=2, count=5000).parse_args()
     kinds, verdicts = Counter[str](), Counter[str]()
     worst: dict[str, float] = {}
     for number, (kind, difference, why) in enumerate(

@@ -44,14 +44,9 @@ class Drawing:
     components: tuple[Placed, ...] = ()
 
 
-def polygon(*points: Point) -> Path:
-    """Straight lines from point to point and back."""
-    return Path(points)
-
-
 def box(left: int, bottom: int, right: int, top: int) -> Path:
     """A rectangle, clockwise as TrueType has outer contours."""
-    return polygon((left, bottom), (left, top), (right, top), (right, bottom))
+    return Path(((left, bottom), (left, top), (right, top), (right, bottom)))
 
 
 def disc(x: int, y: int, radius: int, *, hole: bool = False, on_curve: bool = False) -> Path:
@@ -72,7 +67,7 @@ def weighted(stem: int) -> dict[str, Drawing]:
     middle, width = 300 + stem // 2, 200 + stem
     upright = (1, 0, 0, 1)
     return {
-        ".notdef": Drawing(500, (box(50, 0, 450, 700), polygon((100, 50), (400, 50), (400, 650), (100, 650)))),
+        ".notdef": Drawing(500, (box(50, 0, 450, 700), Path(((100, 50), (400, 50), (400, 650), (100, 650))))),
         "space": Drawing(200 + stem // 2),
         "o": Drawing(
             600 + stem,
@@ -105,20 +100,20 @@ def edge_cases() -> TTFont:
         ".notdef": Drawing(500, (box(50, 0, 450, 700),)),
         "space": Drawing(250),
         "a": Drawing(700, (disc(350, 250, 250), disc(350, 250, 120, hole=True))),
-        "A": Drawing(700, (polygon((50, 0), (350, 700), (650, 0), (500, 0), (350, 350), (200, 0)),)),
+        "A": Drawing(700, (Path(((50, 0), (350, 700), (650, 0), (500, 0), (350, 350), (200, 0))),)),
         'quote"amp&lt<': Drawing(300, (bar,)),
         "CON": Drawing(300, (bar,)),
         "n" * 200: Drawing(300, (bar,)),
         "repeated": Drawing(700, (_each_twice(square), _each_twice(disc(350, 250, 100, hole=True, on_curve=True)))),
-        "onepoint": Drawing(700, (square, polygon((350, 800)))),
-        "twopoints": Drawing(700, (polygon((0, 0), (300, 300)), square)),
-        "flat": Drawing(700, (polygon((0, 0), (100, 100), (500, 500), (200, 200)),)),
+        "onepoint": Drawing(700, (square, Path(((350, 800),)))),
+        "twopoints": Drawing(700, (Path(((0, 0), (300, 300))), square)),
+        "flat": Drawing(700, (Path(((0, 0), (100, 100), (500, 500), (200, 200))),)),
         "overlap": Drawing(900, (square, box(400, 200, 800, 700))),
-        "eight": Drawing(700, (polygon((100, 0), (600, 700), (100, 700), (600, 0)),)),
+        "eight": Drawing(700, (Path(((100, 0), (600, 700), (100, 700), (600, 0))),)),
         "fold": Drawing(700, (Path(((100, 0), (350, 900), (600, 0), (350, 500)), frozenset({1, 3})),)),
         "loop": Drawing(900, (Path(((100, 0), (100, 600), (800, 600), (800, 100), (50, 100)), frozenset({2, 3})),)),
         "huge": Drawing(20000, (disc(0, 0, 15000),)),
-        "tiny": Drawing(10, (polygon((0, 0), (0, 1), (1, 0)),)),
+        "tiny": Drawing(10, (Path(((0, 0), (0, 1), (1, 0))),)),
         "twice": Drawing(700, components=(("a", in_place), ("a", in_place))),
         "hollow": Drawing(700, components=(("space", in_place),)),
     }

@@ -7,7 +7,6 @@ Needs Debian's chromium and the extra ``browser``. Everything shown is made by t
 from __future__ import annotations
 
 import os
-import shlex
 import shutil
 import subprocess
 import sys
@@ -28,15 +27,6 @@ from glyphspline.fitting.options import PRESETS, Corners
 ROOT = Path(__file__).resolve().parent.parent
 FONTS = ROOT / "fonts_test"
 OUT = ROOT / "outputs" / "pictures"
-
-LARGEST = 300_000
-"""Bytes of a picture: a README should open at once."""
-
-TERMINAL = """
-body { margin: 0; background: #1b1a21; color: #e6e4ec; padding: 22px 26px; width: 860px; height: fit-content }
-pre { font: 15px/1.5 'DejaVu Sans Mono', monospace }
-pre { margin: 0; white-space: pre-wrap } b { color: #8fd3a8; font-weight: normal }
-"""
 
 PAIR = """
 body { margin: 0; background: #fff; font: 17px 'DejaVu Sans', sans-serif; display: flex; gap: 10px; color: #222 }
@@ -59,16 +49,11 @@ def main() -> None:
     with sync_playwright() as playwright:
         sandbox = [] if os.getuid() else ["--no-sandbox"]
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=sandbox)
-        for picture in (dragon, corners, variants, text, terminal, gallery, viewer, checks):
+        for picture in (dragon, corners, text, gallery, viewer, checks):
             context = browser.new_context(viewport={"width": 1280, "height": 800}, device_scale_factor=1.25)
             picture(context.new_page())
             context.close()
         browser.close()
-    for path in sorted(OUT.glob("*.png")):
-        size = path.stat().st_size
-        print(f"{path.relative_to(ROOT)}: {size // 1000} kB")
-        if size > LARGEST:
-            sys.exit(f"{path} is larger than {LARGEST} bytes")
 
 
 def dragon(page: Any) -> None:
@@ -89,16 +74,6 @@ def corners(page: Any) -> None:
     side_by_side(page, "corners", found)
 
 
-def variants(page: Any) -> None:
-    """Variants 2 and 3 through the same polygon."""
-    found = []
-    for variant in (2, 3):
-        glyph = gs.convert(outline("kouzan-gyosho.ttf", "g"), gs.Options(variant=variant, step=110))
-        words = f"variant {variant}: {max(c.measures.iterations or 0 for c in glyph.contours)} iterations"
-        found.append((words, gs.to_curvature_svg(glyph, scale=0.012, control_polygon=True)))
-    side_by_side(page, "variants", found)
-
-
 def text(page: Any) -> None:
     """A line bent along a path, and its curvature."""
     font = gs.open_font(FONTS / "kouzan-kaisho.ttf")
@@ -113,27 +88,6 @@ def text(page: Any) -> None:
     page.set_content(f"<style>{LINE}</style>{svg}{gs.to_curvature_svg(bent, vertices=False)}")
     page.set_viewport_size({"width": 990, "height": 560})
     shot(page, "text")
-
-
-def terminal(page: Any) -> None:
-    """A session in a shell, as it runs."""
-    with tempfile.TemporaryDirectory() as place:
-        shutil.copy(FONTS / "kouzan-kaisho.ttf", place)
-        lines = []
-        for command in (
-            "glyphspline info kouzan-kaisho.ttf",
-            "glyphspline convert kouzan-kaisho.ttf --text 龍好 --preset paper --out dragon",
-            "ls dragon dragon/svg",
-        ):
-            words = shlex.split(command)
-            call = [sys.executable, "-m", *words] if words[0] == "glyphspline" else words
-            environment = os.environ | {"PYTHONPATH": str(ROOT)}
-            run = subprocess.run(call, cwd=place, capture_output=True, text=True, check=True, env=environment)
-            said = [line for line in (run.stderr + run.stdout).splitlines() if not line.startswith("slowest")]
-            lines.append(f"<b>$</b> {escape(command)}\n{escape(chr(10).join(said))}\n")
-    session = "\n".join(lines)
-    page.set_content(f"<style>{TERMINAL}</style><pre>{session}</pre>")
-    shot(page.locator("body"), "terminal")
 
 
 def gallery(page: Any) -> None:

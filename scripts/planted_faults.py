@@ -13,6 +13,7 @@ found, or more than one glyph in 50 has a false finding.
 
 ``--mend 4`` mends the faults that are found instead, within so many thousandths of an em, and counts which are gone,
 which outlines are within 2 thousandths of what they were before the fault, and what came that was not there before.
+``--faults spike`` plants those whose names have this in them; ``--list`` names what is not found.
 """
 
 from __future__ import annotations
@@ -106,14 +107,9 @@ def may_turn(a: FloatArray, b: FloatArray) -> float:
 
 
 def curvature(segment: FloatArray, t: FloatArray) -> FloatArray:
-    """Signed curvature at parameters."""
-    points = np.broadcast_to(segment, (len(t), *segment.shape))
+    """Signed curvature at (k,) parameters of a segment, or of k of them."""
+    points = np.broadcast_to(segment, (len(t), *segment.shape[-2:]))
     return signed_curvature(*(evaluate(derivative_points(points, order), t) for order in (1, 2)))
-
-
-def curvature_at_joint(segments: FloatArray) -> FloatArray:
-    """Curvature at the beginning of cubics (k, 4, 2)."""
-    return signed_curvature(*(evaluate(derivative_points(segments, n), np.zeros(len(segments))) for n in (1, 2)))
 
 
 def cut(segment: FloatArray, *at: float) -> Segments:
@@ -183,7 +179,7 @@ def jump(s: Segments, j: int, unit: float) -> Planted | None:
         return None
     before, after = curvature(new[j - 1], np.ones(1))[0], curvature(new[j], np.zeros(1))[0]
     moves = np.random.default_rng(0).uniform(-0.5, 0.5, (200, 4, 2))
-    ends = [curvature_at_joint(new[j - 1][::-1] + moves), curvature_at_joint(new[j] + moves[::-1])]
+    ends = [curvature(part, np.zeros(200)) for part in (new[j - 1][::-1] + moves, new[j] + moves[::-1])]
     if abs(after - before) < 4.5 * np.hypot(*(each.std() for each in ends)):
         return None
     enough = abs(after - before) >= max(2 / (1000 * unit), 0.5 * max(abs(before), abs(after)))
@@ -292,10 +288,8 @@ def extremum(s: Segments, j: int, unit: float) -> Planted | None:
     meet = p + reach * u
     if reach <= 0 or (q - meet) @ v <= 0:
         return None
-    middle = (
-        np.array([p, meet, q]) if len(before) == 3 else np.array([p, p + 0.6 * (meet - p), q + 0.6 * (meet - q), q])
-    )
-    middle = np.round(middle)
+    inner = [meet] if len(before) == 3 else [p + 0.6 * (meet - p), q + 0.6 * (meet - q)]
+    middle = np.round(np.array([p, *inner, q]))
     path = evaluate(np.broadcast_to(middle, (65, *middle.shape)), np.linspace(0, 1, 65))[:, k]
     beyond = max(path.max() - max(path[0], path[-1]), min(path[0], path[-1]) - path.min())
     if beyond < 2 * unit:
@@ -303,9 +297,8 @@ def extremum(s: Segments, j: int, unit: float) -> Planted | None:
     new = s.copy()
     new[j - 1], new[j] = first[0], last[1]
     at = j if j else len(new)
-    return Planted(
-        rounded([*new[:at], middle, *new[at:]]), evaluate(middle[None], np.array([0.5]))[0], chord(middle) / 2
-    )
+    top = evaluate(middle[None], np.array([0.5]))[0]
+    return Planted(rounded([*new[:at], middle, *new[at:]]), top, chord(middle) / 2)
 
 
 def short(s: Segments, j: int, unit: float) -> Planted | None:
@@ -313,13 +306,8 @@ def short(s: Segments, j: int, unit: float) -> Planted | None:
     if chord(s[j]) < 30 * unit:
         return None
     parts = rounded(cut(s[j], 1 - 2 * unit / chord(s[j])))
-    if (
-        not 0 < chord(parts[1]) <= 2.4 * unit
-        or chord(parts[0]) < 20 * unit
-        or size(np.ptp(parts[1], axis=0)) > 2.4 * unit
-    ):
-        return None
-    return Planted([*s[:j], *parts, *s[j + 1 :]], parts[1][0], 0.0)
+    fits = chord(parts[1]) > 0 and size(np.ptp(parts[1], axis=0)) <= 2.4 * unit
+    return Planted([*s[:j], *parts, *s[j + 1 :]], parts[1][0], 0.0) if fits and chord(parts[0]) >= 20 * unit else None
 
 
 def handles(s: Segments, j: int, unit: float) -> Planted | None:
@@ -483,15 +471,9 @@ CUBIC = frozenset({"jump", "lump", "inflection", "handle too long", "crossed han
 """Faults of cubics."""
 
 TABLE: tuple[tuple[str, Planter, str], ...] = (
-    *((f"kink of {degrees}°", partial(kink, degrees=degrees), "kink turn") for degrees in (2, 3, 5, 8, 10)),
-    *(
-        (f"kink of {degrees}° beside a short segment", partial(beside_short, degrees=degrees), "kink turn")
-        for degrees in (3, 5, 8)
-    ),
-    *(
-        (f"line into curve, {degrees}°", partial(line_into_curve, degrees=degrees), "kink turn")
-        for degrees in (2, 3, 5)
-    ),
+    *((f"kink of {n}°", partial(kink, degrees=n), "kink turn") for n in (2, 3, 5, 8, 10)),
+    *((f"kink of {n}° beside a short segment", partial(beside_short, degrees=n), "kink turn") for n in (3, 5, 8)),
+    *((f"line into curve, {n}°", partial(line_into_curve, degrees=n), "kink turn") for n in (2, 3, 5)),
     ("jump", jump, "jump"),
     ("lump", lump, "lump"),
     ("inflection", inflection, "inflection"),
@@ -661,14 +643,12 @@ def mended(outline: gs.Outline, clean: gs.Outline, fault: Fault, outer: int, tol
 
 def new_findings(found: Sequence[Finding], before: Sequence[Finding], scale: float, em: float) -> list[Finding]:
     """Those that are not near one of the same kind in the face as it is."""
-    return [
-        each
-        for each in found
-        if not any(
-            matches(old, frozenset({each.kind}), each.contour, np.array(each.point) / scale, NEAR * em)
-            for old in before
-        )
-    ]
+
+    def known(each: Finding) -> bool:
+        place = frozenset({each.kind}), each.contour, np.array(each.point) / scale, NEAR * em
+        return any(matches(old, *place) for old in before)
+
+    return [each for each in found if not known(each)]
 
 
 def mending_table(became: Mapping[str, Sequence[Mended]]) -> str:
@@ -678,30 +658,14 @@ def mending_table(became: Mapping[str, Sequence[Mended]]) -> str:
         if each:
             whys = Counter(one.why for one in each if one.why).most_common(1)
             share = sum(one.near for one in each) / len(each)
-            counts = [sum(getattr(one, what) for one in each) for what in ("gone", "near", "new", "points")]
-            rows.append(
-                [
-                    name,
-                    len(each),
-                    counts[0],
-                    f"{counts[1]} ({share:.0%})",
-                    *counts[2:],
-                    *(whys[0] if whys else ("", "")),
-                ]
-            )
+            gone, near, *rest = (sum(getattr(one, what) for one in each) for what in ("gone", "near", "new", "points"))
+            rows.append([name, len(each), gone, f"{near} ({share:.0%})", *rest, *(whys[0] if whys else ("", ""))])
     return table(["planted", "", "mended", "within 2", "new findings", "points added", "left, mostly as it", ""], rows)
 
 
 def main() -> int:
     """Plant, write, read, check and count."""
-    options = parser(__doc__, jobs=False)
-    options.add_argument("--each", type=int, default=20, help="faults of each kind in each face (20)")
-    options.add_argument("--glyphs", type=int, default=200, help="of each face, untouched (200)")
-    options.add_argument("--faults", default="", help="only those whose names contain this")
-    options.add_argument("--seed", type=int, default=17)
-    options.add_argument("--list", action="store_true", help="list what is not found, and what is false")
-    options.add_argument("--mend", type=float, help="mend them, within so many thousandths of an em")
-    given = options.parse_args()
+    given = parser(__doc__, each=20, glyphs=200, faults="", seed=17, list=False, mend=0.0).parse_args()
     rng = np.random.default_rng(given.seed)
     names = [name for name in FAULTS if given.faults in name]
     count, found, false, again = (Counter[str]() for _ in range(4))
@@ -748,22 +712,16 @@ def main() -> int:
             false.update(each.kind for each in extra)
             again.update(each.kind for each in extra_far)
             spoiled, spoiled_again = spoiled + bool(extra), spoiled_again + bool(extra_far)
-            if given.list:
-                for each in extra:
-                    print("false:", file, each)
+            for each in extra if given.list else ():
+                print("false:", file, each)
     if given.mend:
         print(mending_table(became))
         return 0
-    rows = [[name, count[name], f"{found[name]} ({found[name] / max(count[name], 1):.1%})"] for name in names]
-    rows.append(["all", count.total(), f"{found.total()} ({found.total() / max(count.total(), 1):.1%})"])
-    print(table(["planted", "", "found"], rows))
-    print()
-    print(
-        table(
-            ["kind", "false", "false in another em"],
-            [[kind.name, false[kind.name], again[kind.name]] for kind in KINDS],
-        )
-    )
+    counts = [*((name, count[name], found[name]) for name in names), ("all", count.total(), found.total())]
+    rows = [[name, tried, f"{hits} ({hits / max(tried, 1):.1%})"] for name, tried, hits in counts]
+    print(table(["planted", "", "found"], rows), end="\n\n")
+    falsely = [[kind.name, false[kind.name], again[kind.name]] for kind in KINDS]
+    print(table(["kind", "false", "false in another em"], falsely))
     print(f"\nOf {untouched} untouched glyphs {spoiled} have false findings, {spoiled_again} in another em.")
     missed = any(found[name] < 0.95 * count[name] for name in names if name not in SMALL)
     return int(missed or spoiled > untouched / 50)

@@ -96,13 +96,7 @@ def load(processes: int) -> Iterator[None]:
 
 def main() -> int:
     """Start, and print what came of it."""
-    options = parser(__doc__, jobs=False)
-    options.add_argument("--starts", type=int, default=2000, help="in all")
-    options.add_argument("--loaded", type=int, default=500, help="beside busy processes")
-    options.add_argument("--killed", type=int, default=100, help="in which a process is killed")
-    options.add_argument("--jobs", type=int, default=4, help="starts at a time")
-    options.add_argument("--seed", type=int, default=0)
-    arguments = options.parse_args()
+    arguments = parser(__doc__, starts=2000, loaded=500, killed=100, jobs=4, seed=0).parse_args()
     with tempfile.TemporaryDirectory() as folder:
         began = time.monotonic()
         subprocess.run([*CONVERT, "--jobs", "2", "-o", f"{folder}/out"], check=True)
@@ -117,9 +111,8 @@ def main() -> int:
         ("under load", arguments.loaded, 4 * (os.cpu_count() or 1), False),
     ):
         with load(busy), ThreadPoolExecutor(arguments.jobs) as threads:
-            made = [
-                threads.submit(start, k, arguments.seed, kills, expected, usual) for k in range(number, number + count)
-            ]
+            numbers = range(number, number + count)
+            made = [threads.submit(start, k, arguments.seed, kills, expected, usual) for k in numbers]
             found = []
             for each in made:
                 found.append(each.result())

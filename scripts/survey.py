@@ -24,11 +24,12 @@ PLACES = [Path(p) for p in os.environ.get("GLYPHSPLINE_FACES", "").split(os.path
 PLACES += [ROOT / "fonts_test", Path("/usr/share/fonts"), Path(matplotlib.get_data_path()) / "fonts"]
 
 
-def parser(text: str | None, jobs: bool = True) -> argparse.ArgumentParser:
-    """A parser of options whose help is a module's docstring, with the number of processes if ``jobs``."""
+def parser(text: str | None, **options: Any) -> argparse.ArgumentParser:
+    """A parser of options, by their names with their defaults, whose help is a module's docstring."""
     made = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
-    if jobs:
-        made.add_argument("--jobs", type=int, default=2, help="processes (2)")
+    for name, usual in options.items():
+        how: dict[str, Any] = {"action": "store_true"} if usual is False else {"type": type(usual), "default": usual}
+        made.add_argument(f"--{name.replace('_', '-')}", help=f"{usual} if not given", **how)
     return made
 
 

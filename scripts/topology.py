@@ -21,7 +21,6 @@ from __future__ import annotations
 import logging
 import random
 import sys
-import time
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -73,7 +72,6 @@ class Glyph:
         own, pairs, collapsed: new crossings of contours with themselves and with others, and contours without area.
         uncounted: whether the measures say that crossings were not counted.
         silent: in words, what its measures say nothing of.
-        seconds: of counting.
     """
 
     face: str
@@ -84,7 +82,6 @@ class Glyph:
     collapsed: int
     uncounted: bool
     silent: tuple[str, ...]
-    seconds: float
 
     @property
     def wrong(self) -> bool:
@@ -129,14 +126,12 @@ def mode(options: gs.Options) -> str:
 def converted(face: str, character: str, way: str, outline: gs.Outline, source: Drawing, options: gs.Options) -> Glyph:
     """Convert a glyph, and count what went wrong."""
     result = gs.convert(outline, options)
-    text, start = gs.to_svg(result), time.process_time()
-    new, collapsed = defects(text, source)
-    seconds = time.process_time() - start
+    new, collapsed = defects(gs.to_svg(result), source)
     measures = [contour.measures for contour in result.contours]
     own = sum(count for (i, j), count in new.items() if i == j)
     uncounted = any(each.new_crossings is None for each in measures)
     silent = tuple(unflagged(new, collapsed, measures))
-    return Glyph(face, character, way, own, sum(new.values()) - own, len(collapsed), uncounted, silent, seconds)
+    return Glyph(face, character, way, own, sum(new.values()) - own, len(collapsed), uncounted, silent)
 
 
 def tasks(count: int, names: Iterable[str]) -> list[tuple[Face, Path, str]]:
@@ -167,12 +162,7 @@ def table_of(glyphs: list[Glyph]) -> str:
 
 def main() -> int:
     """Survey the faces and hard contours, print what is not flagged and the table."""
-    options = parser(__doc__)
-    options.add_argument("--glyphs", type=int, default=60, help="of each face")
-    options.add_argument("--contours", type=int, default=500, help="that are hard")
-    options.add_argument("--seed", type=int, default=0, help="number of the first of these")
-    options.add_argument("--faces", default="", help="parts of names, with commas between them")
-    arguments = options.parse_args()
+    arguments = parser(__doc__, jobs=2, glyphs=60, contours=500, seed=0, faces="").parse_args()
     logging.getLogger("fontTools").setLevel(logging.ERROR)
     found: list[Glyph] = []
     drawn = range(arguments.seed, arguments.seed + arguments.contours)
@@ -189,7 +179,6 @@ def main() -> int:
         return 2
     found.sort(key=lambda glyph: (not glyph.way.endswith(("fast", "best")), glyph.face, glyph.way))
     print(table_of(found))
-    print(f"{1e3 * sum(glyph.seconds for glyph in found) / len(found):.0f} ms to count a glyph's")
     return int(any(glyph.silent for glyph in found))
 
 

@@ -1,6 +1,6 @@
 """How often outlines of one glyph, whose points do not correspond, are matched as their designer meant them.
 
-``python scripts/unlike_masters.py FOLDER [--seeds 1] [--masters 2] [--text 'AB…'] [--pictures DIR] [--jobs 2]``
+``python scripts/unlike_masters.py FOLDER [--seeds 1] [--masters 2] [--text 'AB…'] [--jobs 2]``
 
 FOLDER has variable fonts with a weight axis. Static instances at the ends of that axis (with ``--masters 3`` and a
 default inside it also there) correspond point by point, so every point's true partner is known. Then each instance is
@@ -28,7 +28,7 @@ import sys
 import zlib
 from collections.abc import Iterator, Sequence
 from functools import cache
-from itertools import combinations, repeat
+from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -43,7 +43,6 @@ from glyphspline.outlines.joins import joins
 from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.sampling import CORNER_ANGLE
 from glyphspline.types import FloatArray
-from glyphspline.writers.svg.unmatched import to_unmatched_svg
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from scripts.survey import SegmentPen, distances, parser, surveyed, table
@@ -212,7 +211,7 @@ def inserted(segments: list[FloatArray], rng: np.random.Generator) -> list[Float
     return found
 
 
-def measured(task: Task, pictures: Path | None = None) -> Found:
+def measured(task: Task) -> Found:
     """Change a glyph's masters, match them, and compare with the truth."""
     axis, values, _, em, _ = opened(task.path, task.masters)
     originals = instances(task)
@@ -223,13 +222,9 @@ def measured(task: Task, pictures: Path | None = None) -> Found:
     try:
         masters = match_masters(outlines, [{"wght": value} for value in values], [axis])
         shape, corner, slip = compared(originals, unlike[0][1], masters)
-        found = Found(task, shape / em, corner / em, slip / em, "")
+        return Found(task, shape / em, corner / em, slip / em, "")
     except gs.GlyphsplineError as failure:
-        found = Found(task, np.nan, np.nan, np.nan, failure.message)
-    if pictures is not None and not found.right():
-        words = found.refused or said(found)
-        (pictures / f"{task.path.stem}-{task.name}-{task.seed}.svg").write_text(to_unmatched_svg(outlines, words))
-    return found
+        return Found(task, np.nan, np.nan, np.nan, failure.message)
 
 
 def said(found: Found) -> str:
@@ -290,20 +285,12 @@ def tasks(folder: Path, seeds: int, masters: int, text: str | None) -> Iterator[
 
 def main() -> int:
     """Match all, list the failures and print a table."""
-    options = parser(__doc__)
+    options = parser(__doc__, jobs=2, seeds=1, first_seed=0, every=1, masters=2, text="")
     options.add_argument("folder", type=Path, metavar="FOLDER")
-    options.add_argument("--seeds", type=int, default=1, help="changes of each glyph")
-    options.add_argument("--first-seed", type=int, default=0)
-    options.add_argument("--every", type=int, default=1, metavar="N", help="take each Nth of the changed glyphs only")
-    options.add_argument("--masters", type=int, default=2, choices=(2, 3))
-    options.add_argument("--text", help="characters instead of these")
-    options.add_argument("--pictures", type=Path, metavar="DIR", help="for an SVG of each failure")
     arguments = options.parse_args()
-    if arguments.pictures:
-        arguments.pictures.mkdir(parents=True, exist_ok=True)
     todo = list(tasks(arguments.folder, arguments.seeds, arguments.masters, arguments.text))[:: arguments.every]
     todo = [task._replace(seed=task.seed + arguments.first_seed) for task in todo]
-    found = list(surveyed(measured, todo, repeat(arguments.pictures), jobs=arguments.jobs, chunk=16))
+    found = list(surveyed(measured, todo, jobs=arguments.jobs, chunk=16))
     for one in found:
         if not one.right():
             print(f"{one.task.path.name} {one.task.name} seed {one.task.seed}: {one.refused or said(one)}")

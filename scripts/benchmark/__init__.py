@@ -1,5 +1,5 @@
 """How fast the interpolation is beside what else there is: interleaved runs, medians, ratios.
 
-``measure`` times cases in turn, and writes tables into ``docs/benchmarks.md`` and ``outputs/benchmark/``. A suite is a
-function that gives rows, named in ``SUITES``.
+``measure`` times cases in turn, and writes tables into ``docs/benchmarks.md``. A suite is a function that gives rows,
+named in ``SUITES``.
 """

@@ -92,6 +92,17 @@ def least(rounds: int, *cases: Callable[[int], float]) -> list[float]:
     return [min(column) for column in zip(*times, strict=True)]
 
 
+def seconds(call: Callable[[], object]) -> Callable[[int], float]:
+    """A call as a case for :func:`least`."""
+
+    def case(_: int) -> float:
+        start = perf_counter()
+        call()
+        return perf_counter() - start
+
+    return case
+
+
 def row(what: str, ours: float, theirs: float, must: float, aim: float | None) -> Row:
     """A ratio of times: less is better."""
     return Row(what, ours / theirs, "x", must, aim, more=False, note=f"{per(ours)}, {per(theirs)}")
@@ -166,13 +177,10 @@ def formats() -> list[Row]:
         return [Row(f"outlines as they are: {FONT.name} is not there", 0.0, "s")]
     from glyphspline.fitting.options import Options
 
-    found = []
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
         ours(here / "warm", range(FIRST, FIRST + 50), Options(), ("source",), 1)  # nothing compiles while it is timed
-        for count in (2000, GLYPHS):
-            found += compared(here, range(FIRST, FIRST + count))
-    return found
+        return [row for count in (2000, GLYPHS) for row in compared(here, range(FIRST, FIRST + count))]
 
 
 def compared(here: Path, gids: Sequence[int]) -> list[Row]:

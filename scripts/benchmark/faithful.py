@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import process_time
@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 import glyphspline as gs
+from glyphspline.curves.bezier import as_cubic
 from glyphspline.types import FloatArray
 
 from ..paper.measures import curvature_variation
@@ -58,7 +59,12 @@ FACES = (
 
 def rows() -> list[Row]:
     """All faces that are installed, or lie in a folder of GLYPHSPLINE_FACES."""
-    return [row for measured in (face_rows, fairness_rows) for face in FACES for row in measured(face)]
+    return [row for measured in (face_rows, fairness_rows) for row in of_faces(FACES, measured)]
+
+
+def of_faces(faces: Sequence[Face], measured: Callable[[Face, list[gs.Outline]], list[Row]]) -> list[Row]:
+    """The rows of the faces that are installed."""
+    return [row for face in faces if (glyphs := outlines(face)) for row in measured(face, glyphs)]
 
 
 def outlines(face: Face) -> list[gs.Outline]:
@@ -92,11 +98,8 @@ def numbers(contour: gs.Contour) -> int:
     return int(2 * contour.degrees.sum())
 
 
-def face_rows(face: Face) -> list[Row]:
+def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
     """Means over all glyphs of a face."""
-    glyphs = outlines(face)
-    if not glyphs:
-        return []
     source = np.array([[sum(map(len, g.contours)), sum(map(numbers, g.contours))] for g in glyphs])
     forge = np.array([fewest(g, results) for g, results in zip(glyphs, forge_results(glyphs), strict=True)])
     best, best_time = converted(glyphs, gs.Options(corners="sharp", effort="best", tolerance=1.0))
@@ -156,11 +159,8 @@ WAYS = {
 """Whose fairness is measured."""
 
 
-def fairness_rows(face: Face) -> list[Row]:
+def fairness_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
     """Significant extrema of curvature a glyph, and those beyond each contour's source; how much C2 arcs vary."""
-    glyphs = outlines(face)
-    if not glyphs:
-        return []
     found = {way: np.array([fairness(gs.convert(g, options)) for g in glyphs]) for way, options in WAYS.items()}
     source, (c2, g2) = found["sharp best"][:, 0], (found[way][:, 3] for way in ("sharp best", "sharp best g2"))
     ratio = np.median(c2[g2 > 0] / g2[g2 > 0])
@@ -193,13 +193,7 @@ def forge_results(glyphs: list[gs.Outline]) -> Iterator[list[list[list[Any]]]]:
         assert p.stdin
         assert p.stdout
         for glyph in glyphs:
-            contours = [
-                [
-                    (cubic[[0, 3]] if degree == 1 else cubic).tolist()
-                    for cubic, degree in zip(c.cubics(), c.degrees, strict=True)
-                ]
-                for c in glyph.contours
-            ]
+            contours = [[(as_cubic(s) if len(s) == 3 else s).tolist() for s in c.segments()] for c in glyph.contours]
             print(json.dumps(contours), file=p.stdin, flush=True)
             yield json.loads(p.stdout.readline())
 
@@ -210,9 +204,7 @@ def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int]
     sizes = [(sum(2 * (len(s) - 1) for c in r for s in c), sum(map(len, r)), k) for k, r in enumerate(results)]
     for size, segments, k in sorted(sizes):
         curve = sampled((np.array(s) for c in results[k] for s in c), SPACING)
-        if (
-            len(curve)
-            and max(distances(*pair, closed=False).max() for pair in ((curve, source), (source, curve))) <= 1.0
-        ):
+        pairs = (curve, source), (source, curve)
+        if len(curve) and all(distances(*pair, closed=False).max() <= 1.0 for pair in pairs):
             return segments, size
     return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours))

@@ -6,16 +6,17 @@ The memory of a run is the proportional set size of its processes, summed, in wh
 
 from __future__ import annotations
 
-import json
 import subprocess
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from time import perf_counter, sleep
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from ..survey import table
+
+Name = TypeVar("Name")
 
 
 @dataclass(frozen=True)
@@ -47,11 +48,13 @@ class Row:
         return "aim" if passes[0] else "must" if passes[1] else "no"
 
 
-def interleaved(cases: dict[str, Callable[[], object]], rounds: int = 15, repeat: int = 1) -> dict[str, float]:
-    """Median seconds a call of each case. Each is called once before, uncounted."""
-    for case in cases.values():
+def interleaved(
+    cases: dict[Name, Callable[[], object]], rounds: int = 15, repeat: int = 1, *, warm: bool = True
+) -> dict[Name, float]:
+    """Median seconds a call of each case. With ``warm`` each is called once before, uncounted."""
+    for case in cases.values() if warm else ():
         case()
-    times: dict[str, list[float]] = {name: [] for name in cases}
+    times: dict[Name, list[float]] = {name: [] for name in cases}
     for _ in range(rounds):
         for name, case in cases.items():
             start = perf_counter()
@@ -136,7 +139,7 @@ def markdown(found: list[Row]) -> str:
 
 
 def write(suite: str, rows: list[Row], root: Path) -> None:
-    """Put the table into docs/benchmarks.md, between the suite's markers, and everything into outputs/benchmark/."""
+    """Put the table into docs/benchmarks.md, between the suite's markers."""
     begin, end = (marker.format(suite=suite) for marker in MARKERS)
     page = root / "docs" / "benchmarks.md"
     text = page.read_text(encoding="utf-8") if page.exists() else ""
@@ -144,8 +147,3 @@ def write(suite: str, rows: list[Row], root: Path) -> None:
         before, rest = text.split(begin, 1)
         after = rest.split(end, 1)[1]
         page.write_text(f"{before}{begin}\n{markdown(rows)}\n{end}{after}", encoding="utf-8")
-    target = root / "outputs" / "benchmark" / f"{suite}.json"
-    target.parent.mkdir(parents=True, exist_ok=True)
-    target.write_text(
-        json.dumps([asdict(row) | {"reached": row.reached()} for row in rows], indent=1) + "\n", encoding="utf-8"
-    )

@@ -8,35 +8,28 @@ import numpy as np
 
 import glyphspline as gs
 
-from .faithful import FACES, Face, outlines
+from .faithful import FACES, Face, of_faces
 from .measure import Row
 
 LEAST = {"Kouzan gyosho": 6.0}
 """Extrema beyond the floor a contour that a face may have; others one."""
-
-
-ROUNDS = 3
-"""How often all glyphs are converted in either way, in turn; the least processor time counts."""
 
 WENKAI = Face("LXGW WenKai", "LXGWWenKai-Regular.ttf", False)
 
 
 def rows() -> list[Row]:
     """All faces that are installed."""
-    return [row for face in (*FACES, WENKAI) for row in face_rows(face)]
+    return of_faces((*FACES, WENKAI), face_rows)
 
 
-def face_rows(face: Face) -> list[Row]:
+def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
     """Extrema beyond the floor, vertices, crossings, peaks and time, each against corners that are passed through."""
-    glyphs = outlines(face)
-    if not glyphs:
-        return []
     held, passed = (gs.Options(tolerance=1.0, corners="smooth", hold_corners=hold) for hold in (True, False))
     beyond, vertices, peaks, crossing, missed, kept = [], [], [], [], 0, 0
     converted: dict[gs.Options, list[gs.GlyphResult]] = {}
     seconds: dict[gs.Options, list[float]] = {held: [], passed: []}
     gs.convert_many(glyphs[:5], held)
-    for _ in range(ROUNDS):
+    for _ in range(3):  # in turn; the least processor time counts
         for options in seconds:
             start = process_time()
             converted[options] = gs.convert_many(glyphs, options)

@@ -1,18 +1,17 @@
 """A page of text laid out, fitted and written as SVG, beside the same by uharfbuzz and fontTools' pens, in one run.
 
-Times are of this process, from the opened font to the document, which is read: its outlines are counted. The least of
-several rounds counts, as in :mod:`.batch`.
+Times are of this process, from the opened font to the document. The least of several rounds counts, as in
+:mod:`.batch`.
 """
 
 from __future__ import annotations
 
 from itertools import cycle, islice
 from pathlib import Path
-from time import perf_counter
 
 import matplotlib
 
-from .batch import FONT, least
+from .batch import FONT, least, seconds
 from .measure import Row, in_words
 
 LATIN = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSerif.ttf"
@@ -39,37 +38,21 @@ def page(path: Path, text: str) -> list[Row]:
     import glyphspline as gs
 
     font = gs.open_font(path)
-    gs.to_svg(gs.layout(font, text[:500]).convert(gs.Options(corners="sharp")))  # nothing is compiled while it is timed
-    sizes: list[int] = []
 
-    def ours(_: int) -> float:
-        start = perf_counter()
-        placed = gs.layout(font, text, width=WIDTH * font.metrics.units_per_em)
-        svg = gs.to_svg(placed.convert(gs.Options(corners="sharp")))
-        seconds = perf_counter() - start
-        sizes[:] = [svg.count("M"), len(svg)]
-        return seconds
+    def laid() -> gs.Layout:
+        return gs.layout(font, text, width=WIDTH * font.metrics.units_per_em)
 
-    def theirs(_: int) -> float:
-        start = perf_counter()
-        svg = by_pens(path, text)
-        seconds = perf_counter() - start
-        assert svg.count("M") > CHARACTERS / 2
-        return seconds
+    def drawn() -> str:
+        return gs.to_svg(laid().convert(gs.Options(corners="sharp")))
 
-    def lines(_: int) -> float:
-        start = perf_counter()
-        placed = gs.layout(font, text, width=WIDTH * font.metrics.units_per_em)
-        seconds = perf_counter() - start
-        assert len(placed) > CHARACTERS / 2
-        return seconds
-
-    own, pens, laid = least(ROUNDS, ours, theirs, lines)
+    svg, plain = drawn(), by_pens(path, text)  # nothing is compiled while it is timed
+    assert min(plain.count("M"), len(laid())) > CHARACTERS / 2
+    own, pens, lines = least(ROUNDS, seconds(drawn), seconds(lambda: by_pens(path, text)), seconds(laid))
     what = f"{CHARACTERS:,} characters of {path.name}"
-    note = f"{sizes[0]:,} contours, {sizes[1] / 1e6:.1f} MB; by uharfbuzz and pens, unfitted: {in_words(pens)}"
+    note = f"{svg.count('M'):,} contours, {len(svg) / 1e6:.1f} MB; by uharfbuzz and pens, unfitted: {in_words(pens)}"
     return [
         Row(f"page of {what}, fitted, as SVG", own, "s", 1.0, more=False, note=note),
-        Row(f"layout alone of {what}", laid, "s", None, more=False),
+        Row(f"layout alone of {what}", lines, "s", None, more=False),
     ]
 
 

@@ -21,7 +21,6 @@ HOST = "127.0.0.1:8642"
 FONTS = Path(__file__).parents[2] / "fonts_test"
 LETTERS = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 CHANGES = 15
-LIMIT = 100.0
 
 WAYS: dict[str, tuple[dict[str, Any], float]] = {
     "smooth by step": ({"corners": "smooth", "sampling": "step"}, 1 / 20),
@@ -48,7 +47,6 @@ def answer_row(what: str, path: Path, glyph: str, way: str) -> Row:
         start = perf_counter()
         client.post("/api/glyph", json=body).raise_for_status()
         times.append(perf_counter() - start)
-    ordinary = glyph == "g"
     seconds = median(times[1:])
-    must = LIMIT if ordinary else None
+    must = 100.0 if glyph == "g" else None  # an ordinary letter
     return Row(f"{what}, {way}", seconds * 1e3, "ms", must=must, more=False, note=f"slowest {in_words(max(times[1:]))}")

@@ -1,11 +1,7 @@
-"""Polygons as somebody would click them around a character (the paper used ``ginput``), and where they are kept.
-
-``python -m scripts.paper.clicking`` writes the two data files again from the bundled faces.
-"""
+"""Polygons as somebody would click them around a character (the paper used ``ginput``), and where they are kept."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -103,19 +99,3 @@ def source_contours(font_file: Path, character: str) -> list[FloatArray]:
     font = open_font(font_file)
     (name,) = font.select(text=character)
     return [c.at(np.arange(len(c) * 16) / 16) for c in font.outline(name).contours]
-
-
-def main() -> None:
-    """Write the data files."""
-    DATA.mkdir(exist_ok=True)
-    for stem, (character, file) in CHARACTERS.items():
-        data = clicked_character(FONTS / file, character)
-        text = (
-            json.dumps(data, ensure_ascii=False).replace("]], [[", "]],\n[[").replace('"polygons": ', '"polygons":\n')
-        )
-        (DATA / f"{stem}.json").write_text(text + "\n", encoding="utf-8")
-        print(stem, [len(p) for p in data["polygons"]])
-
-
-if __name__ == "__main__":
-    main()

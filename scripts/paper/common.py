@@ -42,14 +42,9 @@ SIDE = 5.0
 
 INK = "#1f2933"
 GREY = "#9aa5b1"
-COLOURS = {
-    "variant 0": "#b7472a",
-    "variant 1": "#2f6db5",
-    "variant 2": "#12876f",
-    "variant 3": "#d98e04",
-    "variant 4": "#7b4fa3",
-}
-MARKERS = {"variant 0": "x", "variant 1": "o", "variant 2": "s", "variant 3": "^", "variant 4": "D"}
+SHADES = "#b7472a", "#2f6db5", "#12876f", "#d98e04", "#7b4fa3"
+COLOURS = {f"variant {v}": shade for v, shade in enumerate(SHADES)}
+MARKERS = dict(zip(COLOURS, "xos^D", strict=True))
 
 plt.style.use(Path(__file__).with_name("pictures.mplstyle"))
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from multiprocessing import get_context
-
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,9 +19,8 @@ COUNT = 60
 """Polygons a group: all 200 take over three times as long."""
 
 
-def radii(job: tuple[FloatArray, int]) -> FloatArray:
+def radii(polygon: FloatArray, variant: int) -> FloatArray:
     """(iterations,) spectral radius of the composite matrix after each update."""
-    polygon, variant = job
     limit = CUT if variant == 0 else MAX_ITERATIONS
     options = {"residual_tolerance": TOLERANCE, "max_iterations": limit}
     r = gs.interpolate(polygon, variant, diagnostics=variant != 3, **options)  # type: ignore[arg-type]
@@ -39,13 +36,7 @@ def figure_5(run: Run) -> None:
     polygons = [p for group in run.polygons().values() for p in group[:COUNT]]
     curves: dict[int, list[FloatArray]] = {}
     for v in (0, 1, 2, 3):
-        jobs = [(p, v) for p in polygons]
-        if run.quick:
-            curves[v] = list(map(radii, jobs))
-            continue
-
-        with get_context("spawn").Pool(2) as pool:
-            curves[v] = pool.map(radii, jobs, chunksize=20)
+        curves[v] = [radii(p, v) for p in polygons]
     measured = {f"variant {v}": _summary(curves[v]) for v in curves}
     growing = measured["variant 0"]["% of polygons at 1 or more in the end"]
     decaying = max(measured[f"variant {v}"]["% of polygons at 1 or more in the end"] for v in (1, 2, 3))

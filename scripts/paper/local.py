@@ -6,9 +6,9 @@ variants can be compared, as in Fig. 4 beside compiled code, and so that control
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -20,6 +20,7 @@ from glyphspline.curves.bspline import Spline, bezier_pieces
 from glyphspline.interpolation.reference import prepare
 from glyphspline.types import FloatArray, IntArray
 
+from ..benchmark.measure import interleaved
 from .common import COLOURS, Run, draw_series, verdict
 from .study import MAX_ITERATIONS, TOLERANCE
 
@@ -157,14 +158,9 @@ def _plain(polygons: list[FloatArray], variant: int) -> None:
 def _interleaved(
     work: Callable[[list[FloatArray], int], None], polygons: list[FloatArray], rounds: int
 ) -> dict[int, float]:
-    """Median seconds a polygon and variant. The variants take turns, so that a busy moment hits all of them."""
-    seconds: dict[int, list[float]] = {v: [] for v in VARIANTS}
-    for _ in range(rounds):
-        for v in VARIANTS:
-            start = time.perf_counter()
-            work(polygons, v)
-            seconds[v].append((time.perf_counter() - start) / len(polygons))
-    return {v: float(np.median(s)) for v, s in seconds.items()}
+    """Median seconds a polygon and variant."""
+    times = interleaved({v: partial(work, polygons, v) for v in VARIANTS}, rounds, warm=False)
+    return {v: seconds / len(polygons) for v, seconds in times.items()}
 
 
 def figure_4(run: Run) -> None:

@@ -116,7 +116,6 @@ def pia(run: Run) -> None:
 
 def _fairness(run: Run) -> None:
     """Medians over polygons of the measures of the limits of variants 1, 2 and 4, relative to the PIA family's."""
-
     polygons = random_polygons(30 if not run.quick else 8, run.size(COUNT, 2))
     measures = ("∫κ² ds", "∫(dκ/ds)² ds", "max |κ|", "bulge")
     ratios: dict[str, dict[str, list[float]]] = {f"variant {v}": {m: [] for m in measures} for v in (1, 2, 4)}

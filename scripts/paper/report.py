@@ -7,6 +7,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+from ..survey import table as markdown
+
 TEMPLATE = Path(__file__).with_name("README.template.md")
 
 SIGN = {"reproduced": "✓", "differs": "≠", "not decidable": "?", "proven": "∎", "measured": "·"}
@@ -53,11 +55,11 @@ def render(template: str, content: dict[str, Any]) -> str:
 def summary(claims: dict[str, Any]) -> str:
     """A line a claim."""
     rows = [
-        f'| {c["source"]} | <a href="#{id}">{cell(c["claim"])}</a> | {SIGN[c["verdict"].split(" for ")[0]]} '
-        f"{c['verdict']} |"
+        [c["source"], f'<a href="#{id}">{cell(c["claim"])}</a>', f"{SIGN[said.partition(' for ')[0]]} {said}"]
         for id, c in claims.items()
+        if (said := c["verdict"])
     ]
-    return "\n".join(["| source | claim | verdict |", "|---|---|---|", *rows])
+    return markdown(["source", "claim", "verdict"], rows)
 
 
 def block(claim: dict[str, Any]) -> str:
@@ -95,11 +97,8 @@ def table(rows: dict[str, dict[str, Any]]) -> str:
     """A mapping of rows, all with the same columns."""
     columns = list(next(iter(rows.values())))
     names = any(rows)
-    head = ([""] if names else []) + [cell(c) for c in columns]
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    for name, entries in rows.items():
-        lines.append("| " + " | ".join(([cell(name)] if names else []) + [cell(entries[c]) for c in columns]) + " |")
-    return "\n".join(lines)
+    cells = [[cell(name)] * names + [cell(entries[c]) for c in columns] for name, entries in rows.items()]
+    return markdown([""] * names + [cell(c) for c in columns], cells)
 
 
 def listing(entries: dict[str, Any]) -> str:

@@ -82,7 +82,8 @@ def build_wheel(wheel_directory: str, config_settings: Any = None, metadata_dire
         pin(metadata)
         tags = numba_tags()
         describe(metadata / "WHEEL", tags)
-        name = "-".join([*pure.split("-")[:2], *compressed(tags)]) + ".whl"
+        parts = zip(*(tag.split("-") for tag in tags), strict=True)
+        name = "-".join([*pure.split("-")[:2], *(".".join(sorted(set(part))) for part in parts)]) + ".whl"
         pack(tree, metadata / "RECORD", Path(wheel_directory) / name)
     return name
 
@@ -124,11 +125,6 @@ def pin(metadata: Path) -> None:
 def numba_tags() -> list[str]:
     """The tags of the numba that is installed: a wheel whose only native code is run by numba runs where that does."""
     return HeaderParser().parsestr(distribution("numba").read_text("WHEEL") or "").get_all("Tag", [])
-
-
-def compressed(tags: list[str]) -> list[str]:
-    """Tags as parts of the name of a file."""
-    return [".".join(sorted(set(parts))) for parts in zip(*(tag.split("-") for tag in tags), strict=True)]
 
 
 def describe(file: Path, tags: list[str]) -> None:

@@ -210,12 +210,7 @@ def tried(seed: int, commands: float, end: float) -> Iterator[tuple[str, Mutant,
 
 def main() -> int:
     """Try for so long; print and keep what is found."""
-    options = parser(__doc__, jobs=False)
-    options.add_argument("--minutes", type=float, default=10)
-    options.add_argument("--commands", type=float, default=inf)
-    options.add_argument("--seed", type=int, default=0)
-    options.add_argument("--out", type=Path, default=Path("outputs/fuzz"))
-    arguments = options.parse_args()
+    arguments = parser(__doc__, minutes=10.0, commands=inf, seed=0, out=Path("outputs/fuzz")).parse_args()
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         for name in ("edge-cases.ttf", "variable-cff2.otf", "space", "drawings"):
             put(Path(), sources()[name])
