@@ -1,9 +1,10 @@
-"""How many kinks are mended, and how: ``python scripts/mended_kinks.py SOURCE…`` for fonts, UFOs and designspaces.
+"""How many kinks are mended, and how: ``python scripts/mended_kinks.py SOURCE… [--tolerance 1] [--glyphs 300]``.
 
-Counted are kinks of a degree or more, at masters or along axes; nothing is written. Glyphs that changed are checked
-again, at masters and along axes, and compared with what they were at five random locations each, by sampling. Reasons
-why kinks are left follow, with quartiles of what they need where only the tolerance is against it. Lengths are in
-thousandths of an em; times are of one process, reading included.
+Sources are fonts, UFOs and designspaces, of which glyphs are chosen at random. Counted are kinks of a degree or more,
+at masters or along axes; nothing is written. Glyphs that changed are checked again, at masters and along axes, and
+compared with what they were at five random locations each, by sampling. Reasons why kinks are left follow, with
+quartiles of what they need where only the tolerance is against it. Lengths are in thousandths of an em; times are of
+one process, reading included.
 """
 
 from __future__ import annotations
@@ -99,10 +100,8 @@ def reasons(kinks: list[Change]) -> str:
 
 def main() -> None:
     """Print the tables."""
-    options = parser(__doc__, jobs=False)
+    options = parser(__doc__, tolerance=1.0, glyphs=300)
     options.add_argument("sources", nargs="+", type=Path)
-    options.add_argument("--tolerance", type=float, default=1.0, help="thousandths of an em (1)")
-    options.add_argument("--glyphs", type=int, default=300, help="of each source, chosen at random (300)")
     given = options.parse_args()
     headings = ["", "glyphs", "kinks", "mended", "moved by over 3", "new findings", "points added", "beyond", "a glyph"]
     print(table(headings))

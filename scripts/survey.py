@@ -24,7 +24,7 @@ PLACES = [Path(p) for p in os.environ.get("GLYPHSPLINE_FACES", "").split(os.path
 PLACES += [ROOT / "fonts_test", Path("/usr/share/fonts"), Path(matplotlib.get_data_path()) / "fonts"]
 
 
-def parser(text: str | None, **options: Any) -> argparse.ArgumentParser:
+def parser(text: str | None, /, **options: Any) -> argparse.ArgumentParser:
     """A parser of options, by their names with their defaults, whose help is a module's docstring."""
     made = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
     for name, usual in options.items():
