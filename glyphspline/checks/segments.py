@@ -40,6 +40,10 @@ LEVEL = np.tan(np.radians(10.0))
 BACK = 0.25
 """Share of a segment's larger turn up to which the turn the other way is not meant: an S turns both ways alike."""
 
+END, ALIKE = np.radians(45.0), 0.5
+"""Turn from which a corner ends a stroke. Share that the lesser turn of its two sides has of the other one at least:
+with less, one side alone that kinks would be passed over."""
+
 WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER, SEEN = range(7)
 """Columns of the table (n, 7) that passes return: number of the kind; contour; place on it, segment and local
 parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1; how far it is
@@ -141,7 +145,7 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
             kinks = turn >= least_kink(last[i], first[j], limits.kink, limits.rounding)
             if kinks or (turn >= limits.turn and not lines):
                 tapers, arm = kinks and lines, min(arc(p), arc(q))
-                kinks = kinks and not lines and turn * arm >= limits.kink_height
+                kinks = kinks and not lines and turn * arm >= limits.kink_height and not ends_stroke(segments, i, j)
                 if kinks or tapers or turn >= limits.turn:
                     what, seen = KINK if kinks else TURN, turn / limits.corner_angle * arm
                     count = put(table, count, what, c, place, np.degrees(turn), np.nan, seen)
@@ -166,6 +170,30 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
                 if limits.unlevel <= off <= limits.unlevel_most:
                     count = put(table, count, UNLEVEL, c, place, off)
     return table[:count]
+
+
+@compiled
+def ends_stroke(segments: Segments, i: int, j: int) -> bool:
+    """Whether a curve turns into the straight end of a stroke between segments i and j, and so does the other side.
+
+    The end is three lines with two corners. Both sides turn as the stroke does, one to the left and one to the right.
+    """
+    _, degrees, _, before, behind, first, last = segments
+    if degrees[i] > 1 and degrees[j] == 1:
+        a, b, c = j, behind[j], behind[behind[j]]
+        curve = behind[c]
+        here, there = turn_of(last[i], first[j]), turn_of(last[c], first[curve])
+    elif degrees[i] == 1 and degrees[j] > 1:
+        a, b, c = before[before[i]], before[i], i
+        curve = before[a]
+        here, there = turn_of(last[i], first[j]), turn_of(last[curve], first[a])
+    else:
+        return False
+    if degrees[a] > 1 or degrees[b] > 1 or degrees[c] > 1 or degrees[curve] == 1:
+        return False
+    one, two = turn_of(last[a], first[b]), turn_of(last[b], first[c])
+    low, high = min(abs(here), abs(there)), max(abs(here), abs(there))
+    return one * two > 0 and min(abs(one), abs(two)) > END and here * there < 0 and low >= ALIKE * high
 
 
 @compiled

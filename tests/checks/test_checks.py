@@ -318,3 +318,21 @@ def test_a_bend_that_goes_all_the_way_round_has_its_four_maxima(depth: float, re
     assert found.value > 1
     assert found.point[0] < -100
     assert found.point[1] < -100
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+@pytest.mark.parametrize(
+    ("tilts", "expected"),
+    [((14.0, 14.0), "turn"), ((14.0, 8.0), "turn"), ((14.0, 0.0), "kink"), ((14.0, -14.0), "kink")],
+)
+def test_a_stroke_whose_sides_turn_alike_into_its_end_is_meant(
+    tilts: tuple[float, float], expected: str, reverse: bool
+) -> None:
+    left, right = tilts
+    stroke = closed(
+        [left, 100], [80 + right, 100], [80, 0], [80, -80, 100, -150, 200, -200], [120, -290],
+        [30, -200, 0, -100, 0, 0],
+    )  # fmt: skip
+    segments = [segment[::-1] for segment in stroke.segments()][::-1] if reverse else stroke.segments()
+    found = kinds(Contour.from_segments([*segments]))
+    assert {"turn", "kink"} & found.keys() == {expected}

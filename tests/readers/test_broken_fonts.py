@@ -153,3 +153,10 @@ def test_a_table_of_characters_cut_short_is_an_error_for_facts_too(cmap: bytes, 
     for read in (open_font, file_facts):
         with pytest.raises(FontError, match=r"cut\.ttf: a broken font: "):
             read(tmp_path / "cut.ttf")
+
+
+def test_axes_with_tags_of_other_characters_are_an_error(tmp_path: Path) -> None:
+    data = (FONTS / "variable.ttf").read_bytes()
+    (tmp_path / "tag.ttf").write_bytes(data.replace(b"wght", b"wg\0\x80"))
+    with pytest.raises(FontError, match=r"tag\.ttf: has an axis whose tag is not of ASCII"):
+        open_font(tmp_path / "tag.ttf")

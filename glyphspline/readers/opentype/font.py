@@ -78,6 +78,8 @@ class Font(Source):
             def name_of(name_id: int) -> str | None:
                 return names.getDebugName(name_id) if names else None
 
+            if not all(isinstance(axis.axisTag, str) for axis in variations.axes):
+                raise FontError("has an axis whose tag is not of ASCII characters")
             self.axes = tuple(
                 DesignAxis(
                     a.axisTag, name_of(a.axisNameID) or a.axisTag, min(a.minValue, a.defaultValue), a.defaultValue,
