@@ -4,14 +4,21 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from math import isfinite
 from pathlib import PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from ..fitting.results import BOUNDS, SOLVED
-from ..types import rounded_up
+from ..types import FloatArray, rounded_up
 from ..writers.svg.document import document
 from . import FOLDER
+
+if TYPE_CHECKING:
+    from ..fitting.convert_masters import MastersResult
+    from ..outlines.masters import MasterContour
 
 MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
     "deviation": max,
@@ -49,25 +56,55 @@ COLUMNS = (
 DIGITS, DECIMALS = 5, 7
 """Significant digits of the table's measures. Significant digits of measures, beyond which they are rounding noise."""
 
+FULL = 4.0
+"""Curvature in 1/em at which colours end and teeth are full, where a run has no scale of its own."""
+
+PRECISION = 3
+"""Decimals of coordinates in masters, which are multiplied by weights of about 1."""
+
 encoded = json.JSONEncoder(ensure_ascii=True, allow_nan=False, separators=(",", ":")).encode
 """Data as ASCII JSON in one line."""
 
 
-def glyph_text(drawing: Mapping[str, str], files: Mapping[str, str], contours: Sequence[Mapping[str, Any]]) -> bytes:
+def glyph_text(
+    drawing: Mapping[str, str], files: Mapping[str, str], contours: Sequence[Mapping[str, Any]],
+    masters: Mapping[str, Any] | None = None,
+) -> bytes:  # fmt: skip
     """A glyph's data file.
 
     Args:
         drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" if unknown.
         files: by format, relative to the run's folder.
         contours: the measures of its contours; what is None is left out.
+        masters: of a glyph in all masters, see :func:`along_axes`.
     """
     links = {name: path for name, path in files.items() if name != FOLDER}
     known = [{name: value for name, value in contour.items() if value is not None} for contour in contours]
     parts = ["glyphsplineData({"]
     for name, data in drawing.items():
         parts.append(f'"{name}":"{data}",')
-    parts.append(f'"files":{as_json(links)},"contours":{as_json(known)}}});\n')
+    parts.append(f'"files":{as_json(links)},"contours":{as_json(known)}')
+    parts.append(f',"masters":{as_json(masters)}}});\n' if masters else "});\n")
     return document(parts)
+
+
+def along_axes(result: MastersResult) -> dict[str, Any]:
+    """A glyph in all masters as the page mixes it: axes, regions, and the default and a delta for each region."""
+    masters = result.masters
+    deltas: FloatArray = np.asarray(np.linalg.inv(masters.scalars(masters.peaks)), dtype=np.float64)
+    return {
+        "axes": [asdict(axis) for axis in masters.axes], "regions": masters.regions.tolist(),
+        "source": contours_in(deltas, [contour.source for contour in result.contours]),
+        "result": contours_in(deltas, [contour.curve for contour in result.contours]),
+    }  # fmt: skip
+
+
+def contours_in(mixes: FloatArray, contours: Sequence[MasterContour]) -> list[list[Any]]:
+    """For each contour its degrees, and its coordinates in each of (n, K) mixes of its masters."""
+    return [
+        [each.degrees.tolist(), np.round(mixes @ each.points.reshape(len(each.points), -1), PRECISION).tolist()]
+        for each in contours
+    ]
 
 
 def plain(value: Any, digits: int = DECIMALS) -> Any:

@@ -76,7 +76,7 @@
     const sort = at("sort").value;
     chosen = GS.choose(rows, { words: at("words").value.trim(), run: at("run").value, show: at("show").value, sort,
       down: at("down").checked, least: sort === "gid" ? null : limit("least"), most: sort === "gid" ? null : limit("most") });
-    const fact = sort === "gid" ? "deviation" : sort;
+    const fact = sort === "gid" ? ["deviation", "deviation_bound"].find((name) => present.has(name)) ?? "deviation" : sort;
     grid.set(chosen, (row) => (row.status !== "ok" ? row.status
       : [GS.changed(row), GS.value(row, fact) === null ? `${GS.number(GS.value(row, "vertices"))} vertices`
         : [GS.number(GS.value(row, fact), GS.isBound(fact)), GS.measures.get(fact).unit, GS.measures.get(fact).label].filter(Boolean).join(" "),

@@ -19,7 +19,7 @@ from ..fitting.options import Options
 from ..fitting.results import QUANTITIES
 from ..writers.svg.comb import palette
 from . import FOLDER
-from .data import COLUMNS, MEASURES, as_json, row_of, script
+from .data import COLUMNS, FULL, MEASURES, as_json, row_of, script
 from .pages import page_of
 
 TABLE = 5000
@@ -152,7 +152,7 @@ def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:
         "style": font.get("style", ""),
         "location": font.get("location", {}),
         "metrics": metrics,
-        "scale": run.get("curvature_scale") or 4 / metrics["units_per_em"],
+        "scale": run.get("curvature_scale") or FULL / metrics["units_per_em"],
         "options": run.get("options", {}),
         "words": _words(run),
         "glyphs": count,

@@ -7,12 +7,13 @@
     const find = (name) => dialog.querySelector(`[data-part="${name}"]`);
     const picture = find("picture"), fade = find("fade");
     const zoom = GS.stage(picture);
+    const location = {}; // axis tag to value, of all glyphs
     let rows = [], position = 0, drawing = null, every = false, closed = () => {};
 
     const draw = () => {
       if (!drawing) return;
       const { run } = rows[position];
-      picture.replaceChildren(GS.layers(run, drawing, layersOn()));
+      picture.replaceChildren(GS.layers(run, drawing.masters ? GS.instance(drawing, location) : drawing, layersOn()));
       const { units_per_em: em, ascender, descender } = run.metrics, advance = rows[position].advance ?? em;
       const guides = [[-em, 0, 3 * em, 0], [0, -ascender, 0, -descender], [advance, -ascender, advance, -descender]];
       picture.prepend(GS.svg("path", { class: "guides", d: guides.map(([a, b, c, d]) => `M${a} ${b}L${c} ${d}`).join("") }));
@@ -26,6 +27,19 @@
       picture.style.setProperty("--result-shown", Math.min(1, 2 * value).toFixed(3));
       fade.setAttribute("aria-valuetext", value === 0.5 ? "both" : value < 0.5 ? "more of the source" : "more of the result");
     };
+
+    /** A slider for each axis of a glyph in all masters. */
+    const sliders = () => (drawing.masters?.axes ?? []).map((axis) => {
+      const value = () => location[axis.tag] ?? axis.default, out = GS.element("output", {}, GS.number(value()));
+      const input = GS.element("input", { type: "range", min: `${axis.minimum}`, max: `${axis.maximum}`, step: "any" });
+      input.value = value();
+      input.addEventListener("input", () => {
+        location[axis.tag] = +input.value;
+        out.textContent = GS.number(value());
+        draw();
+      });
+      return GS.element("label", { class: "axis" }, `${axis.name} (${axis.tag})`, input, out);
+    });
 
     const facts = (row) => {
       const [head, ...lines] = GS.measureRows(drawing.contours, row.run.metrics.units_per_em, { every });
@@ -56,6 +70,7 @@
       if (rows[position] !== row) return;
       picture.setAttribute("aria-label", `${row.name}: source outline and interpolated curve`);
       zoom.fit(GS.box(row.run, row.advance));
+      find("axes").replaceChildren(...sliders());
       draw();
       facts(row);
     };

@@ -22,20 +22,8 @@
   /** Contours as pieces, y down, of one side, "old" or "new", of a drawing at a place. */
   const contoursOf = (drawing, side, place) => {
     const weights = place ? drawing.weights[place[0]][place[1]] : [1];
-    return drawing[side].map(([degrees, masters]) => {
-      const count = masters[0].length / 2, points = Array.from({ length: count }, (_, n) => [0, 1].map((k) =>
-        weights.reduce((sum, weight, m) => sum + weight * masters[m][2 * n + k], 0) * (k ? -1 : 1)));
-      let from = 0;
-      return degrees.map((degree) => {
-        const piece = Array.from({ length: degree + 1 }, (_, i) => points[(from + i) % count]);
-        from += degree;
-        return piece;
-      });
-    });
+    return GS.mixed(drawing[side], weights);
   };
-
-  const data = (contours) => contours.map((pieces) => `M${pieces[0][0].join(" ")}` + pieces.map((p) =>
-    `${" LQC"[p.length - 1]}${p.slice(1).flat().join(" ")}`).join("") + "Z").join("");
 
   const draw = (card) => {
     const { row } = card, drawing = setup.drawings[row.drawing], place = placeOf(row), em = drawing.em;
@@ -53,7 +41,7 @@
     const handles = (of, name) => GS.svg("path", { class: name, d: GS.handles(of.flat()).map(([a, b]) => GS.join(a, b)).join("") });
     picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
     picture.replaceChildren(
-      GS.svg("path", { class: "source", d: data(old) }), GS.svg("path", { class: "result", d: data(now) }), ...combs,
+      GS.svg("path", { class: "source", d: GS.pathData(old) }), GS.svg("path", { class: "result", d: GS.pathData(now) }), ...combs,
       handles(old, "handle-before"), handles(now, "handle-after"), GS.dots([own[row.segment][0]], "mark"),
       GS.svg("path", { class: "moves", d: moves.map(([a, b]) => GS.join(a, b)).join("") }),
       GS.dots(moves.map(([a]) => a), "before"), GS.dots(moves.map(([, b]) => b), "after"),

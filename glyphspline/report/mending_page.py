@@ -17,6 +17,7 @@ from ..outlines.masters import DesignAxis, Masters
 from ..types import FloatArray, rounded_up
 from ..writers.svg.comb import palette
 from ..writers.svg.document import text
+from .data import PRECISION, contours_in
 from .pages import page_of
 
 DRAWN, LISTED = 500, 20_000
@@ -24,9 +25,6 @@ DRAWN, LISTED = 500, 20_000
 
 STEPS = 48
 """Steps of each axis on the slider."""
-
-PRECISION = 3
-"""Decimals of coordinates and weights: weights of masters times coordinates of thousands."""
 
 SCRIPTS = ("page.js", "shapes.js", "mending.js")
 
@@ -103,11 +101,7 @@ def weights_along(masters: Masters, places: Sequence[FloatArray]) -> list[FloatA
 def drawing(old: Masters, new: Masters, places: Sequence[FloatArray]) -> dict[str, Any]:
     """A glyph before and after, in all masters, and their weights along each axis."""
     sides = {
-        name: [
-            [each.degrees.tolist(), [np.round(points.ravel(), PRECISION).tolist() for points in each.points]]
-            for each in masters.contours
-        ]
-        for name, masters in (("old", old), ("new", new))
+        name: contours_in(np.eye(len(masters)), masters.contours) for name, masters in (("old", old), ("new", new))
     }
     weights = [np.round(each, PRECISION + 3).tolist() for each in weights_along(old, places)]
     return {"em": old.metrics.units_per_em, **sides, "weights": weights}

@@ -74,6 +74,42 @@
     return contours;
   };
 
+  /** Contours in some masters, [degrees, coordinates of each master], mixed: pieces as of GS.contours, y down. */
+  GS.mixed = (contours, weights) => contours.map(([degrees, masters]) => {
+    const count = masters[0].length / 2, points = Array.from({ length: count }, (_, n) => [0, 1].map((k) =>
+      weights.reduce((sum, weight, m) => sum + weight * masters[m][2 * n + k], 0) * (k ? -1 : 1)));
+    let from = 0;
+    return degrees.map((degree) => {
+      const piece = Array.from({ length: degree + 1 }, (_, i) => points[(from + i) % count]);
+      from += degree;
+      return piece;
+    });
+  });
+
+  /** Pieces as absolute path data. */
+  GS.pathData = (contours) => contours.map((pieces) => `M${pieces[0][0].join(" ")}` + pieces.map((p) =>
+    `${" LQC"[p.length - 1]}${p.slice(1).flat().join(" ")}`).join("") + "Z").join("");
+
+  /** A value of an axis from -1 to 1, as regions have it. */
+  const normalised = ({ minimum, default: home, maximum, mapping }, value) => {
+    const side = value < home ? home - minimum : maximum - home, x = side > 0 ? (value - home) / side : 0;
+    const k = mapping.findIndex(([before]) => before >= x);
+    if (k < 1) return k ? mapping[mapping.length - 1]?.[1] ?? x : mapping[0][1];
+    const [[a, from], [b, to]] = [mapping[k - 1], mapping[k]];
+    return from + (to - from) * (x - a) / (b - a);
+  };
+
+  /** A drawing at a location, axis tag to value: source and result are mixed of the default and deltas. */
+  GS.instance = (drawing, location) => {
+    const { axes, regions, source, result } = drawing.masters;
+    const at = axes.map((axis) => normalised(axis, location[axis.tag] ?? axis.default));
+    const share = (x, [low, peak, high]) => (!peak || x === peak ? 1
+      : Math.min(1, Math.max(0, x < peak ? (x - low) / (peak - low) : (high - x) / (high - peak))));
+    const weights = [1, ...regions.map((region) => region.reduce((product, own, a) => product * share(at[a], own), 1))];
+    const path = (contours) => GS.pathData(GS.mixed(contours, weights));
+    return { ...drawing, source: path(source), result: path(result) };
+  };
+
   /** Dots on the points of polygons, "M x y l dx dy … Z". */
   GS.dotted = (data, name) => GS.svg("path", { class: name, d: data.replaceAll("Z", "")
     .replace(/(M|l?)\s*(-?[\d.]+)\s*(-?[\d.]+)/g, (_, command, x, y) => `${command === "M" ? "M" : "m"}${x} ${y}h0`) });

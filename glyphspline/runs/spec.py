@@ -121,8 +121,8 @@ class RunSpec:
     maps: Maps = field(default_factory=Maps)
     masters: bool = option(
         False,
-        "Convert all masters of a variable font at once, to a variable font (--format otf, ttf) or "
-        "designspace (ufo).",
+        "Convert all masters of a variable font at once, to a variable font (--format otf, ttf), designspace (ufo), "
+        "drawings of the default (svg) or a page with a slider for each axis (gallery).",
         WRITTEN,
     )  # fmt: skip
     keep_name: bool = option(
@@ -179,12 +179,13 @@ class RunSpec:
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
-        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.has_results else []))
+        polygon = GALLERY in own and not self.masters
+        return (*own, *([POLYGON] if polygon else []), *([RESULTS] if self.has_results else []))
 
     @property
     def has_results(self) -> bool:
         """Whether results are stored: fonts are made of them. The rows of a table are kept elsewhere."""
-        return self.is_back or not {*self.whole} <= {PARQUET}
+        return self.masters or self.is_back or not {*self.whole} <= {PARQUET}
 
     @property
     def whole(self) -> tuple[str, ...]:

@@ -8,7 +8,13 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
+import glyphspline as gs
 from glyphspline.report.gallery import write_report
+from glyphspline.runs.jobs.masters import convert_font_masters
+from glyphspline.runs.schedule import InProcess
+from glyphspline.runs.spec import RunSpec
+from glyphspline.writers.svg.path_data import curves_data
+from tests.places import FONTS
 
 
 def opened(page: Any, folder: Path) -> Any:
@@ -311,3 +317,26 @@ def test_convex_and_concave_are_the_inks(page: Any, gallery: Path) -> None:
         " 'uni9F8D')?.querySelector('.comb .cut'); return e && e.getAttribute('d').split('M').length > few; }",
         arg=max(few, default=0),
     )
+
+
+def test_glyphs_in_all_masters_have_a_slider_for_each_axis(page: Any, tmp_path: Path) -> None:
+    font = gs.open_font(FONTS / "variable-cff2.otf")
+    convert_font_masters([font], ["o"], tmp_path, RunSpec(formats=("gallery",), masters=True), InProcess())
+    opened(page, tmp_path)
+    page.locator(".card:has(b:text-is('o'))").click()
+    axes = page.locator("[data-part=axes] label")
+    assert axes.all_inner_texts() == ["Weight (wght)\n400", "Width (wdth)\n100"]
+    masters = font.masters("o")
+    result = gs.convert_masters(masters)
+    for location in ({}, {"wght": 650.0}, {"wght": 650.0, "wdth": 80.0}):
+        for k, tag in enumerate(("wght", "wdth")):
+            if tag in location:
+                axes.nth(k).locator("input").evaluate(
+                    "(slider, value) => { slider.value = value; slider.dispatchEvent(new Event('input')); }",
+                    location[tag],
+                )
+        for name, expected in (("source", masters.instance(location)), ("result", result.instance(location))):
+            box = page.locator(f"[data-part=picture] .{name}").evaluate(
+                "path => { const b = path.getBBox(); return [b.x, -b.y - b.height, b.x + b.width, -b.y]; }"
+            )
+            assert box == pytest.approx(curves_data(expected.arrays, 2)[0].box, abs=0.02)

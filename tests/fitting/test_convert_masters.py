@@ -33,6 +33,7 @@ from glyphspline.types import BoolArray, FloatArray, MadeOnDemand
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.new_variable_font import to_new_variable_font
 from glyphspline.writers.font.variable_font import to_variable_font
+from glyphspline.writers.svg.path_data import path_data
 from glyphspline.writers.ufo_folder import write_designspace
 from tests import topology
 from tests.places import FONTS
@@ -312,11 +313,32 @@ def test_single_fonts_become_a_variable_one(tmp_path: Path) -> None:
     assert list((tmp_path / "out").rglob("*.designspace"))
 
 
+def test_the_default_master_is_drawn_and_a_page_has_all(tmp_path: Path) -> None:
+    call = ["convert", str(CFF2), "--masters", "--glyphs", "o,space", "--out", str(tmp_path), "--jobs", "0"]
+    assert CliRunner().invoke(app, call).exit_code == 0
+    result = gs.convert_masters(gs.open_font(CFF2).masters("o"))
+    contours = result.instance({}).contours
+    assert f'd="{path_data(contours, 2)}"' in (tmp_path / "svg" / "o.svg").read_text()
+    lines = [json.loads(line) for line in (tmp_path / "manifest.jsonl").read_text().splitlines()]
+    assert [sorted(line["files"]) for line in lines] == [["results"], ["curvature", "gallery", "results", "svg"]]
+    assert [line["advance"] for line in lines] == [gs.open_font(CFF2).outline(n).advance for n in ("space", "o")]
+    text = (tmp_path / "gallery" / "o.glyph.js").read_text()
+    masters = json.loads(text.removeprefix("glyphsplineData(").removesuffix(");\n"))["masters"]
+    assert [axis["tag"] for axis in masters["axes"]] == ["wght", "wdth"]
+    peak = result.masters.scalars(result.masters.peaks)
+    for (degrees, mixed), contour in zip(masters["result"], result.contours, strict=True):
+        assert degrees == contour.curve.degrees.tolist()
+        np.testing.assert_allclose((peak @ mixed).reshape(contour.curve.points.shape), contour.curve.points, atol=2e-3)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()}
+    assert CliRunner().invoke(app, [*call, "--resume"]).exit_code == 0
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == before
+
+
 def test_masters_refuse_formats_that_are_not_theirs(tmp_path: Path) -> None:
-    call = ["convert", str(CFF2), "--masters", "--all", "--out", str(tmp_path / "out"), "--jobs", "0"]
-    done = CliRunner().invoke(app, call)
+    call = ["convert", str(CFF2), "--masters", "--all", "--format", "parquet", "--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, [*call, "--jobs", "0"])
     assert done.exit_code == 2
-    assert "not svg" in done.output + (done.stderr if done.stderr_bytes else "")
+    assert "not parquet" in done.output + (done.stderr if done.stderr_bytes else "")
 
 
 @pytest.fixture(scope="module")

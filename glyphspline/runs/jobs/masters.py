@@ -21,17 +21,22 @@ from ...errors import GlyphsplineError, OutputError
 from ...files import make_folder, remove_partials, write_whole, writing
 from ...fitting.convert_masters import MastersResult, check_options
 from ...fitting.options import Options
+from ...fitting.results import ContourResults, GlyphResult, not_fitted
+from ...outlines.outline import Contours
 from ...readers import Font, Source
 from ...readers.designspace import Designspace, GlyphsFile
 from ...readers.single_fonts import axis_of
+from ...report import FOLDER as GALLERY
+from ...report.data import FULL, along_axes, glyph_text, plain
 from ...types import MadeOnDemand, counted, listed, rounded_up
 from ...writers.font.font_glyphs import Flavour
 from ...writers.font.master_deltas import Redrawn, StoredGlyph
+from ...writers.formats import OURS
 from ..engine import Job, Observer, reason
 from ..folder import Done, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
 from ..result_text import stored
 from ..schedule import Place, place_of, sources
-from ..spec import RESULTS, RunSpec, describe, write_run
+from ..spec import MAPS, RESULTS, RunSpec, describe, suffix_of, write_run
 from ..summary import NAMED, MastersSummary
 from .convert import back_to_source, check_back, font_files, tasks_of
 
@@ -40,8 +45,9 @@ if TYPE_CHECKING:
     from ...outlines.masters import Masters
     from ...writers.font.variable_font import VariableSummary
 
-FORMATS = ("ufo", "otf", "ttf")
-"""Formats of a run over masters: a designspace with its UFOs, and variable fonts."""
+FORMATS = (*OURS, GALLERY, "ufo", "otf", "ttf")
+"""Formats of a run over masters: drawings of the default, a gallery with sliders, a designspace with its UFOs, and
+variable fonts."""
 
 SHARE = 0.5
 """Share of the tolerance that the curves may use where quadratics are fitted to them, which take the rest."""
@@ -52,38 +58,62 @@ UNMATCHED = "unmatched"
 
 @dataclass(frozen=True)
 class MastersJob(Job[Task, list[Done]]):
-    """What a worker needs: the font, or the single fonts and their axis; the folder of the run; the options."""
+    """What a worker needs: the font, or the single fonts and their axis; the folder of the run; the options that glyphs
+    are converted with, and what is written."""
 
     places: tuple[Place, ...]
     axis: str | None
     out: Path
     options: Options
+    spec: RunSpec
 
     budget = 1.0
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
-        """Convert one glyph and store its result."""
+        """Convert one glyph, store its result and write its drawings."""
         from ...fitting.convert_masters import convert_masters
-        from ..result_text import to_text
 
         (task,) = tasks
         result = convert_masters(self._masters(task), self.options)
-        file = f"{RESULTS}/{task.stem}.json"
-        size = write_whole(f"{self.out}/{file}", to_text(result))
+        names = self.spec.folders if result.contours else (RESULTS,)
+        files = {name: f"{name}/{task.stem}{suffix_of(name)}" for name in names}
         entry = {
-            "status": "ok" if result.contours else "empty", "files": {RESULTS: file}, "masters": len(result.masters),
+            "advance": plain(float(result.masters.advances[0])), "status": "ok" if result.contours else "empty",
+            "files": files, "masters": len(result.masters),
             "contours": [_measures(contour) for contour in result.contours], "notes": list(result.notes),
             "stored": None, "kept": None, "error": None,
         }  # fmt: skip
-        return [done(task, entry, [size], encode=_encoded)]
+        sizes = [write_whole(f"{self.out}/{path}", self._file(name, result, entry)) for name, path in files.items()]
+        return [done(task, entry, sizes, encode=_encoded)]
+
+    def _file(self, name: str, result: MastersResult, entry: Mapping[str, Any]) -> str | bytes:
+        """A glyph's file of a format: its result, its data on the page, or a drawing of its default master."""
+        from ..result_text import to_text
+
+        if name == RESULTS:
+            return to_text(result)
+        glyph, settings = default_glyph(result), self.spec.settings
+        if name != GALLERY:
+            em, maps = result.masters.metrics.units_per_em, self.spec.maps
+            known = {"maps": maps, "scale": maps.scale_for(em) or FULL / em} if name in MAPS else {}
+            write: Any = OURS[name].write
+            made: str | bytes = write(glyph, settings.scaled(result.masters.metrics), **known)
+            return made
+        from ...writers.svg.document import source_data
+        from ...writers.svg.path_data import curves_data
+
+        (source,) = source_data([glyph])
+        (curve,) = curves_data(glyph.arrays.curves, self.options.precision)
+        shown = {"source": source.text, "result": curve.text, "polygon": "", "control": ""}
+        return glyph_text(shown, entry["files"], entry["contours"], along_axes(result))
 
     def failed(self, task: Task, error: Exception) -> list[Done]:
         """The line of a glyph that has no result; it names the font that is at fault, if that is not the first."""
         others = {str(path): path.name for path, _, _ in self.places[1:]}
         where = others.get(error.font or "") if isinstance(error, GlyphsplineError) else None
         entry: dict[str, Any] = {
-            "status": "failed", "files": {}, "masters": None, "contours": [], "notes": [], "stored": None,
-            "kept": None,
+            "advance": None, "status": "failed", "files": {}, "masters": None, "contours": [], "notes": [],
+            "stored": None, "kept": None,
             "error": f"{where}: {reason(error)}" if where else reason(error),
         }  # fmt: skip
         return [done(task, entry, encode=_encoded)]
@@ -168,14 +198,15 @@ def convert_font_masters(
         options = spec.options
         if "ttf" in spec.formats:
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
-        job = MastersJob(tuple(map(place_of, sources)), axis, out.absolute(), options)
+        job = MastersJob(tuple(map(place_of, sources)), axis, out.absolute(), options, spec)
         finished = record.finished()
         left = [task for task in tasks_of(first, wanted, spec.names) if task.gid not in finished]
         for _ in recorded(job, left, executor, record, out, observer):
             pass
-        remove_partials(out / RESULTS)
+        for name in spec.folders:
+            remove_partials(out / name)
         written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
-        conclude(out, record, summary, changed=partial(_with_written, *written))
+        conclude(out, record, summary, GALLERY in spec.formats, changed=partial(_with_written, *written))
     summary.seconds = time.perf_counter() - began
     return summary
 
@@ -223,6 +254,17 @@ def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redraw
         if entry["status"] == "ok" or (with_empty and entry["status"] == "empty"):
             files[entry["glyph"]] = entry["files"][RESULTS]
     return MadeOnDemand(files, lambda name: redrawn_glyph(stored(out / files[name], MastersResult)))
+
+
+def default_glyph(result: MastersResult) -> GlyphResult:
+    """The default master of a result and of its source, as single outlines are drawn; nothing is measured."""
+    weights = np.eye(len(result.masters))[0]
+    source, curves = (
+        Contours([each.mixed(weights) for each in contours]).arrays
+        for contours in ([each.source for each in result.contours], [each.curve for each in result.contours])
+    )
+    contours = ContourResults(not_fitted(source, curves), 0, len(result.contours))
+    return GlyphResult(replace(result.mixed(weights), contours=Contours(source)), result.options, contours)
 
 
 def redrawn_glyph(result: MastersResult) -> Redrawn:
