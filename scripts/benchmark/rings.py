@@ -23,7 +23,10 @@ def rows() -> list[Row]:
 
 
 def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
-    """Extrema beyond the floor, vertices, crossings, peaks and time, each against corners that are passed through."""
+    """Extrema beyond the floor, vertices, crossings, peaks and time, each against corners that are passed through.
+
+    A contour below the floor has none beyond it, so that it does not make up for another one.
+    """
     held, passed = (gs.Options(tolerance=1.0, corners="smooth", hold_corners=hold) for hold in (True, False))
     beyond, vertices, peaks, crossing, missed, kept = [], [], [], [], 0, 0
     converted: dict[gs.Options, list[gs.GlyphResult]] = {}
@@ -46,12 +49,12 @@ def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
             kept = len(measures) - len(smooth)
     (a, b), limit = map(np.array, beyond), LEAST.get(face.name, 1.0)
     counts = (
-        f"medians {np.median(a):g}, {np.median(b):g}; those below the floor as none {a.clip(0).mean():.3g}; "
-        f"corners passed {b.mean():.3g}; {len(glyphs)} glyphs"
+        f"medians {np.median(a):g}, {np.median(b):g}; those below the floor as less than none {a.mean():.3g}; "
+        f"corners passed {b.clip(0).mean():.3g}; {len(glyphs)} glyphs"
     )
     sharp = f"corners passed {crossing[1]}; {kept} of {len(measures)} contours are fitted sharp or kept"
     return [
-        Row(f"{face.name}: extrema beyond the floor a contour", float(a.mean()), "", limit, 0.0, False, counts),
+        Row(f"{face.name}: extrema beyond the floor a contour", float(a.clip(0).mean()), "", limit, 0.0, False, counts),
         Row(f"{face.name}: vertices, corners held / passed", vertices[0] / vertices[1], "x", 1.2, 1.1, False),
         Row(f"{face.name}: contours not certified", missed, "", 0.5, 0.5, False),
         Row(f"{face.name}: glyphs that cross anew", crossing[0], "", 10.0, 0.5, False, sharp),

@@ -24,8 +24,8 @@ SAMPLES = 3
 STEPS = 6
 """Newton steps."""
 
-SMALL = 0.02
-"""Share of the curvature by which it may change at little cost; from ten times this a change counts as an extremum."""
+SMALL = 0.3
+"""Share of the curvature up to which its changes are squared; larger ones cost their size. With less, steps stall."""
 
 FLAT = 10 * TURN
 """Over the length of the contour, the curvature below which changes count as if it were this."""
@@ -33,14 +33,14 @@ FLAT = 10 * TURN
 STRAIGHT = 0.1 * TURN
 """Over the length of the contour, the curvature up to which a span is straight."""
 
-BARRIER, WEAKER = 0.1, 0.5
+BARRIER, WEAKER = 0.2, 0.5
 """The barrier's first weight, and its share from step to step."""
 
-LIMIT, CUT = 0.8, 0.8
+LIMIT, CUT = 0.9, 0.8
 """Share of the distance allowed that samples keep to at first, as they are few; share of what a span that then fails
 should have had."""
 
-TRIES = 3
+TRIES = 5
 """How often contours are faired before they stay as they were: each time nearer to the outline where they failed."""
 
 PEAK = 1.2
