@@ -37,9 +37,6 @@ DEVIATION = np.sqrt(1 / 12)
 LEVEL = np.tan(np.radians(10.0))
 """Slope from which a handle is not meant to be level."""
 
-BACK = 0.25
-"""Share of a segment's larger turn up to which the turn the other way is not meant: an S turns both ways alike."""
-
 END, ALIKE = np.radians(45.0), 0.5
 """Turn from which a corner ends a stroke. Share that the lesser turn of its two sides has of the other one at least:
 with less, one side alone that kinks would be passed over."""
@@ -110,14 +107,14 @@ def arranged(
 
 
 @compiled
-def put(
-    table: FloatArray, count: int, what: int, contour: int, place: float, value: float, detail: float = np.nan,
-    seen: float = np.nan,
-) -> int:  # fmt: skip
-    """Write a row of the table after ``count`` others; return the number of rows."""
+def put(table: FloatArray, count: int, what: int, contour: int, place: float, value: float) -> int:
+    """Write a row of the table, without detail, after ``count`` others; return the number of rows.
+
+    Numba takes a default of NaN in code out of a file for another one, and finds no such function.
+    """
     row = table[count]
-    row[WHAT], row[CONTOUR], row[PLACE], row[VALUE], row[DETAIL], row[OTHER] = what, contour, place, value, detail, -1
-    row[SEEN] = seen
+    row[WHAT], row[CONTOUR], row[PLACE], row[VALUE], row[OTHER] = what, contour, place, value, -1
+    row[DETAIL] = row[SEEN] = np.nan
     return count + 1
 
 
@@ -148,7 +145,8 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
                 kinks = kinks and not lines and turn * arm >= limits.kink_height and not ends_stroke(segments, i, j)
                 if kinks or tapers or turn >= limits.turn:
                     what, seen = KINK if kinks else TURN, turn / limits.corner_angle * arm
-                    count = put(table, count, what, c, place, np.degrees(turn), np.nan, seen)
+                    count = put(table, count, what, c, place, np.degrees(turn))
+                    table[count - 1, SEEN] = seen
             elif lines:
                 chord = q[3] - p[0]
                 off = abs((chord.conjugate() * (q[0] - p[0])).imag) / length(chord)
@@ -164,7 +162,8 @@ def joint_findings(segments: Segments, limits: Limits) -> FloatArray:
                         by_rounding = rounding_variance(p[3], p[2], p[1]) + rounding_variance(q[0], q[1], q[2])
                     if jump > limits.rounding * np.sqrt(by_rounding):
                         share = jump / most
-                        count = put(table, count, JUMP, c, place, jump, share, share * min(arc(p), arc(q)))
+                        count = put(table, count, JUMP, c, place, jump)
+                        table[count - 1, DETAIL], table[count - 1, SEEN] = share, share * min(arc(p), arc(q))
             if degrees[i] > 1 and degrees[j] > 1 and not kinks:
                 off = off_level(last[i], first[j], p[0] - q[0], q[3] - q[0])
                 if limits.unlevel <= off <= limits.unlevel_most:
@@ -246,7 +245,8 @@ def segment_findings(segments: Segments, limits: Limits) -> FloatArray:
                 back, other, t = bends_back(segments, j, limits)
                 if reach > 0 and back > 0:
                     count = put(table, count, HANDLES, c, place, reach)
-                elif reach == 0 and 0 < back <= BACK * other:
+                # Of its larger turn, up to which the turn the other way is not meant: an S turns both ways alike.
+                elif reach == 0 and 0 < back <= 0.25 * other:
                     count = put(table, count, INFLECTION, c, j - offsets[c] + t, np.degrees(back))
     return table[:count]
 

@@ -13,15 +13,9 @@ import numpy as np
 from ..curves.bspline import Spline
 from ..fitting.results import ConvertedContours
 from ..interpolation.result import Interpolation
-from ..outlines.contour_arrays import ContourArrays, Polylines, joined, offsets_of
+from ..outlines.contour_arrays import ContourArrays, Polylines, joined, members_of
 from ..outlines.outline import Contours, Outline
-from ..types import BoolArray, FloatArray, IntArray, Views
-
-
-def ranges(starts: IntArray, lengths: IntArray) -> IntArray:
-    """The integers of k ranges, one range after the other."""
-    ends = np.cumsum(lengths)
-    return np.arange(int(lengths.sum())) + np.repeat(starts - ends + lengths, lengths)
+from ..types import FloatArray, IntArray, Views
 
 
 class Motion(NamedTuple):
@@ -66,26 +60,19 @@ class Parts(NamedTuple):
 
 def moved_contours(contours: ContourArrays, which: IntArray, motion: Motion) -> ContourArrays:
     """The chosen contours, moved."""
-    segments, points = np.diff(contours.offsets)[which], np.diff(contours.starts)[which]
-    return ContourArrays(
-        motion.of(contours.points[ranges(contours.starts[which], points)], points),
-        contours.degrees[ranges(contours.offsets[which], segments)],
-        offsets_of(segments),
-        offsets_of(points),
-    )
+    found = contours.chosen(which)
+    return found._replace(points=motion.of(found.points, np.diff(found.starts)))
 
 
 def _moved_polylines(lines: Polylines, which: IntArray, motion: Motion) -> Polylines:
-    points = np.diff(lines.offsets)[which]
-    closed: BoolArray = lines.closed[which]
-    return Polylines(motion.of(lines.points[ranges(lines.offsets[which], points)], points), offsets_of(points), closed)
+    points, offsets = members_of(lines.offsets, which)
+    return Polylines(motion.of(lines.points[points], np.diff(offsets)), offsets, lines.closed[which])
 
 
 def moved_results(found: ConvertedContours, which: IntArray, motion: Motion) -> ConvertedContours:
     """The chosen contours' results, moved: knots, parameters and measures stay as they are."""
-    counts = np.diff(found.arc_offsets)[which]
-    arcs = ranges(found.arc_offsets[which], counts)
-    controls = _moved_polylines(found.controls, arcs, motion.repeated(counts))
+    arcs, offsets = members_of(found.arc_offsets, which)
+    controls = _moved_polylines(found.controls, arcs, motion.repeated(np.diff(offsets)))
     chosen = which.tolist()
     return ConvertedContours(
         moved_contours(found.source, which, motion),
@@ -93,7 +80,7 @@ def moved_results(found: ConvertedContours, which: IntArray, motion: Motion) -> 
         _moved_polylines(found.polygons, which, motion),
         Views(len(arcs), partial(_moved_arcs, found.arcs, arcs, controls)),
         controls,
-        offsets_of(counts),
+        offsets,
         {name: [column[c] for c in chosen] for name, column in found.measures.items()},
     )
 

@@ -14,11 +14,11 @@ from ..errors import GlyphsplineError
 from ..fitting.convert import DEFAULTS, convert_many
 from ..fitting.options import Options
 from ..fitting.results import ContourResults, GlyphResult, as_glyphs, end_to_end
-from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.contour_arrays import ContourArrays, joined, members_of, offsets_of
 from ..outlines.outline import Contours, FontMetrics, Outline
 from ..readers import Source
 from ..types import FloatArray, IntArray, counted
-from .moved import Motion, Parts, joined_where_touching, moved_contours, moved_results, ranges
+from .moved import Motion, Parts, joined_where_touching, moved_contours, moved_results
 
 LEFT_OUT = "left out"
 """How the note on a glyph begins that cannot be read or converted."""
@@ -213,8 +213,8 @@ class Layout:
 
 def _chosen(ends: IntArray, parts: Parts) -> tuple[IntArray, Motion]:
     """Which contours the text has, and how each is moved; ``ends``: where those of each part begin."""
-    counts = np.diff(ends)[parts.which]
-    return ranges(ends[:-1][parts.which], counts), Motion.by(parts.origin, parts.angle).repeated(counts)
+    contours, offsets = members_of(ends, parts.which)
+    return contours, Motion.by(parts.origin, parts.angle).repeated(np.diff(offsets))
 
 
 def _rounded_anew(parts: Parts, precision: int) -> bool:

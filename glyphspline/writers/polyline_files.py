@@ -69,8 +69,9 @@ def polyline_json(glyph: GlyphResult, settings: Settings) -> str:
     polygons, bound = _written(glyph, settings)
     # Of ``polyline.schema.json``.
     data = {"format": "glyphspline-polyline", "version": 1, **head(glyph, settings), "fill_rule": "nonzero"}
-    limits = {"flatness": _flatness(glyph, settings) * settings.scale, "bound": bound}
-    return as_text({**data, **limits, "contours": [polygon.tolist() for polygon in polygons]})
+    flatness = settings.flatness_for(glyph.outline.metrics.units_per_em) * settings.scale
+    contours = [polygon.tolist() for polygon in polygons]
+    return as_text({**data, "flatness": flatness, "bound": bound, "contours": contours})
 
 
 def polyline_csv(glyph: GlyphResult, settings: Settings) -> str:
@@ -139,13 +140,9 @@ def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int
     return list(holes.items())
 
 
-def _flatness(glyph: GlyphResult, settings: Settings) -> float:
-    return settings.flatness_for(glyph.outline.metrics.units_per_em)
-
-
 def _written(glyph: GlyphResult, settings: Settings) -> tuple[list[FloatArray], float]:
     """The polygons as they are written, scaled and rounded to decimals, and the bound with that, in the same unit."""
-    flatness = _flatness(glyph, settings)
+    flatness = settings.flatness_for(glyph.outline.metrics.units_per_em)
     found = to_polylines(glyph, flatness * (1 - RESERVE))
     decimals = max(0, math.ceil(-math.log10(flatness * RESERVE * settings.scale * math.sqrt(2))))
     rounding = 0.5 * 10.0**-decimals * math.sqrt(2)

@@ -24,7 +24,7 @@ from glyphspline.fitting.convert_masters import convert_masters
 from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.readers import Font
 from glyphspline.runs.jobs.masters import redrawn_glyph
-from glyphspline.writers.font.family_name import replace_family
+from glyphspline.writers.font.font_file import replace_family
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.stretches import ranges_of
 from glyphspline.writers.font.variable_font import VariableSummary, to_variable_font

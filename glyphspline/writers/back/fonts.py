@@ -31,13 +31,12 @@ from ...outlines.masters import MasterContour, Masters, quadratics
 from ...readers import Font
 from ...types import BoolArray, FloatArray, IntArray
 from ..font.master_deltas import region_key, rounded_deltas
+from ..font.quadratic_contours import PHANTOMS
 from ..font.variable_font import CharStrings2
 from ..font.variable_glyf import Gvar, placed_by_points, put_glyphs
 
 NEAR = 2e-3
 """Units within which a contour as it is stored is the one that was read."""
-
-PHANTOMS = 4
 
 OUTLINES = ("glyf", "loca", "gvar", "CFF ", "CFF2")
 BOUNDS = ("head", "hmtx", "vmtx", "hhea", "vhea", "maxp")

@@ -36,6 +36,7 @@ from .font_glyphs import (
     drawn_result,
     drop_endless,
     parts_of,
+    quadratic_result,
     stays,
     users,
 )
@@ -54,6 +55,10 @@ PICTURES = ("EBDT", "EBLC", "EBSC", "CBDT", "CBLC", "sbix", "SVG ", "bdat", "blo
 
 SPENT = ("DSIG", "STAT", "MERG", "VORG")
 """A signature, names of axes, and values derived from the old outlines."""
+
+TRADEMARK, STYLES, PREFIX = 7, (17, 2), 25
+FAMILY, WITH_STYLE, POSTSCRIPT = (1, 16, 21), (3, 4, 18), (6, 20)
+"""Numbers of names; ``PREFIX``: of the PostScript names of instances."""
 
 DATE = 3_786_912_000
 """2024-01-01 in a font's seconds, for sources without a date: the bytes must not depend on the clock."""
@@ -128,8 +133,6 @@ def to_font(
 def drawn_as(result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None, extrema: bool) -> Drawn:
     """A converted glyph ready to be stored; see :func:`.font_glyphs.drawn_result`."""
     if flavour == "ttf" and result.options.is_for_fonts:
-        from .static_quadratics import quadratic_result  # imports the compiler
-
         return quadratic_result(result, tolerance)
     return drawn_result(result, tolerance, flavour, width, extrema)
 
@@ -384,6 +387,35 @@ def rename(font: TTFont, family: str, style: str) -> None:
         top = fonts.topDictIndex[0]
         top.FamilyName, top.FullName = ascii_only(family), ascii_only(texts[4])
         top.rawDict.pop("Notice", None)
+
+
+def replace_family(font: TTFont, family: str) -> None:
+    """Replace the family name of a variable font in all names that have it, those of instances too; no trademark stays.
+
+    Styles, and whatever else axes, instances and features are called, stay.
+    """
+    if "name" not in font:
+        return
+    names = font["name"]
+    old = names.getBestFamilyName() or ""
+    style = next((name for name in map(names.getDebugName, STYLES) if name), "Regular")
+    names.removeNames(nameID=TRADEMARK)
+    styles = dict.fromkeys((*WITH_STYLE, *POSTSCRIPT), style)
+    for instance in font["fvar"].instances if "fvar" in font else ():
+        if instance.postscriptNameID != 0xFFFF:
+            styles[instance.postscriptNameID] = names.getDebugName(instance.subfamilyNameID) or style
+    known = {*FAMILY, PREFIX, *styles}
+    for record in [each for each in names.names if each.nameID in known]:
+        text, identity = record.toUnicode(errors="replace"), record.nameID
+        if identity in FAMILY:
+            new = text.replace(old, family, 1) if old and old in text else family
+        elif identity == PREFIX:
+            new = postscript(family)
+        elif identity in WITH_STYLE:
+            new = text.replace(old, family, 1) if old and old in text else f"{family} {styles[identity]}"
+        else:
+            new = postscript(f"{family}-{styles[identity]}")
+        names.setName(new, identity, record.platformID, record.platEncID, record.langID)
 
 
 def postscript(name: str) -> str:

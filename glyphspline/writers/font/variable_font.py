@@ -24,7 +24,7 @@ from ...outlines.masters import MasterContour
 from ...readers import Font
 from ...readers.source import reusing
 from ...types import FloatArray, IntArray
-from .family_name import replace_family
+from .font_file import replace_family
 from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of
 from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, region_key, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally

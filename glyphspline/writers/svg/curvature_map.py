@@ -6,7 +6,6 @@ from functools import cache, lru_cache
 from itertools import pairwise
 from math import floor
 from textwrap import wrap
-from typing import Any
 
 import numpy as np
 
@@ -78,41 +77,32 @@ def to_curvature_svg(
         >>> 'class="comb"' in to_curvature_svg(glyph)
         True
     """
-    scale = curvature_scale([glyph]) if scale is None else scale
-    how: dict[str, Any] = {"vertices": vertices, "control_polygon": control_polygon, "in_corners": in_corners}
-    return map_document(glyph, scale, comb, **how).decode()
+    maps = Maps(comb, corner_teeth=in_corners)
+    return write_map(glyph, Settings(), maps, scale, vertices=vertices, control_polygon=control_polygon).decode()
 
 
 def write_map(
-    result: GlyphResult,
+    glyph: GlyphResult,
     settings: Settings,
     maps: Maps = PLAIN_MAPS,
     scale: float | None = None,
     path: PathData | None = None,
-) -> bytes:
-    """The file of a result; ``scale`` and the path of the curves under the comb, if they are known."""
-    if scale is None:
-        scale = maps.scale_for(result.outline.metrics.units_per_em) or curvature_scale([result])
-    return map_document(result, scale, maps.comb, path, in_corners=maps.corner_teeth, words=settings.title)
-
-
-def map_document(
-    glyph: GlyphResult,
-    scale: float,
-    combs: Combs = "result",
-    path: PathData | None = None,
     *,
     vertices: bool = True,
     control_polygon: bool = False,
-    in_corners: bool = False,
-    words: str | None = None,
 ) -> bytes:
-    """The document of :func:`to_curvature_svg` in UTF-8; ``words``: what the title names instead of the glyph."""
-    outline, arrays, whose = glyph.outline, glyph.arrays, shown_by(combs)
-    em = outline.metrics.units_per_em
+    """The document of :func:`to_curvature_svg` in UTF-8.
+
+    Args:
+        settings: whose title names the glyph otherwise. scale, path: the latter of the curves under the comb; if known.
+    """
+    outline, arrays, combs = glyph.outline, glyph.arrays, maps.comb
+    em, whose = outline.metrics.units_per_em, shown_by(combs)
+    if scale is None:
+        scale = maps.scale_for(em) or curvature_scale([glyph])
     precision = comb_precision(em)
     path = path or curves_data(curves_of(glyph, whose), glyph.options.precision)[0]
-    layers, box, cut = _comb(glyph, scale, combs, in_corners, precision)
+    layers, box, cut = _comb(glyph, scale, combs, maps.corner_teeth, precision)
     box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"
     layers.append(
@@ -148,7 +138,7 @@ def map_document(
         f'{data_attributes(outline, precision)} data-scale="{scale:.6g}" fill="none" stroke-linecap="round"'
         ' stroke-linejoin="round"'
     )
-    name, named = f"{prefix}-map-title", f"Curvature of {title(outline, words)}{drawn}"
+    name, named = f"{prefix}-map-title", f"Curvature of {title(outline, settings.title)}{drawn}"
     return document([head(view_box_value(box, precision), name, named, attributes), *layers])
 
 
