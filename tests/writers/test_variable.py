@@ -17,13 +17,16 @@ from fontTools.ttLib.tables.ttProgram import Program
 from fontTools.ufoLib import UFOReader
 from fontTools.varLib import build as build_variable
 
-from glyphspline import OutputError, open_font
+from glyphspline import Options, OutputError, convert_masters, open_font
+from glyphspline.curves.integrals import area
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters, quadratics
 from glyphspline.readers import Font
+from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.types import FloatArray
 from glyphspline.writers.font.implied_quadratics import basis
 from glyphspline.writers.font.master_deltas import Redrawn, as_drawn, nearest_whole, rounded_deltas
+from glyphspline.writers.font.other_outlines import to_other_outlines
 from glyphspline.writers.font.variable_font import components, to_variable_font
 from glyphspline.writers.ufo_folder import unlike_regions, write_designspace
 from tests.outlines.test_masters import composed
@@ -224,14 +227,54 @@ def test_nothing_redrawn_changes_nothing(path: Path, flavour: str) -> None:
 
 def test_what_cannot_be_written_is_refused() -> None:
     font = open_font(OTF)
-    with pytest.raises(OutputError, match=r"CFF2 outlines, not those of a ttf.*can be written as otf.*or as ufo"):
+    with pytest.raises(OutputError, match="has the outlines of otf, not of ttf"):
         to_variable_font(font, {}, "ttf")
-    with pytest.raises(OutputError, match=r"glyf outlines, not those of an otf.*can be written as ttf.*or as ufo"):
+    with pytest.raises(OutputError, match="has the outlines of ttf, not of otf"):
         to_variable_font(open_font(TTF), {}, "otf")
     with pytest.raises(OutputError, match="not variable"):
         to_variable_font(open_font(FONTS / "kouzan-gyosho.ttf"), {}, "ttf")
     with pytest.raises(GlyphsplineError, match="no such glyph"):
         to_variable_font(font, {"x": refitted(font.masters("o"))}, "otf")
+
+
+@pytest.mark.parametrize("path", [TTF, OTF, None])
+def test_outlines_of_the_other_kind_are_the_same_at_every_location(path: Path | None, blobs: Font) -> None:
+    source = open_font(path) if path else blobs
+    flavour, near = ("ttf", 1.0) if path == OTF else ("otf", 1e-3)
+    data, summary = to_other_outlines(source, {}, flavour, tolerance=1.0, rest=0.5)  # type: ignore[arg-type]
+    assert not summary.glyphs
+    assert data == to_other_outlines(source, {}, flavour, tolerance=1.0, rest=0.5)[0]  # type: ignore[arg-type]
+    assert ("glyf" in TTFont(BytesIO(data))) == (flavour == "ttf")
+    rng = np.random.default_rng(3)
+    for _ in range(6):
+        at = {axis.tag: float(rng.uniform(axis.minimum, axis.maximum)) for axis in source.axes}
+        here, there = (Font(source.path, each, 0, at) for each in (source.path.read_bytes(), data))
+        for name in source.glyph_names:
+            old, new = here.outline(name), there.outline(name)
+            assert new.advance == pytest.approx(old.advance, abs=0.51)
+            assert len(new.contours) == len(old.contours)
+            for a, b in zip(old.contours, new.contours, strict=True):
+                points = [dense([*c.cubics()], 40) for c in (a, b)]
+                assert max(apart(points[0], points[1]), apart(points[1], points[0])) < near + 0.05
+            total = sum(area(contour.cubics()) for contour in new.contours)
+            assert total == 0 or (total > 0) == (flavour == "otf")
+
+
+def test_glyphs_drawn_anew_have_outlines_of_the_other_kind_within_the_tolerance() -> None:
+    source = open_font(TTF)
+    redrawn = {"o": redrawn_glyph(convert_masters(source.masters("o"), Options(tolerance=1.0)))}
+    data, summary = to_other_outlines(source, redrawn, "otf", tolerance=1.0, rest=0.5)
+    assert set(summary.glyphs) == {"o"}
+    assert (summary.glyphs["o"].bound or 9.0) <= 1.0
+    font = Font(source.path, data, 0, {"wght": 650.0})
+    old = open_font(TTF, location={"wght": 650.0}).outline("o")
+    for a, b in zip(old.contours, font.outline("o").contours, strict=True):
+        points = [dense([*c.cubics()], 200) for c in (a, b)]
+        assert 1e-3 < apart(points[1], points[0]) < 1.0
+    _, tight = to_other_outlines(
+        open_font(OTF), {"n": as_it_is(open_font(OTF).masters("n"))}, "ttf", tolerance=0.05, rest=0.05
+    )
+    assert "beyond the tolerance" in tight.left["n"]
 
 
 def test_regions_that_the_font_does_not_have_leave_the_glyph() -> None:

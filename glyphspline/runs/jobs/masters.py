@@ -30,7 +30,7 @@ from ...report import FOLDER as GALLERY
 from ...report.data import FULL, along_axes, glyph_text, plain
 from ...types import MadeOnDemand, counted, listed, rounded_up
 from ...writers.font.font_glyphs import Flavour
-from ...writers.font.master_deltas import Redrawn, StoredGlyph
+from ...writers.font.master_deltas import Redrawn, StoredGlyph, bound_of
 from ...writers.formats import OURS
 from ..engine import Job, Observer, reason
 from ..folder import Done, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
@@ -234,12 +234,12 @@ def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
         if "otf" in spec.formats:
             raise OutputError("single fonts become a variable font with quadratic outlines: ask for ttf, or ufo")
         return
-    for flavour in _flavours(spec):
-        from ...writers.font.variable_font import check_flavour
+    if _flavours(spec):
+        from ...writers.font.variable_font import flavour_of
 
         if not isinstance(font, Font):
             raise OutputError("a designspace has no font whose outlines could be replaced: ask for ufo")
-        check_flavour(font, flavour)
+        flavour_of(font)
 
 
 def _flavours(spec: RunSpec) -> list[Flavour]:
@@ -279,12 +279,8 @@ def redrawn_glyph(result: MastersResult) -> Redrawn:
 
 
 def _stored(glyph: StoredGlyph, redrawn: Mapping[str, Redrawn], name: str, tolerance: float) -> dict[str, Any]:
-    """What the manifest says of a glyph as a font stores it. Where its arcs were not compared with the source, what is
-    certified and how far it is stored add up.
-    """
-    bound, tally = glyph.bound, glyph.tally
-    if bound is None:
-        bound = max(redrawn[name].bounds, default=0.0) + glyph.distance
+    """What the manifest says of a glyph as a font stores it."""
+    bound, tally = bound_of(glyph, redrawn[name]), glyph.tally
     counts = {"points": tally.points, "kinks": tally.kinks, "kinks_between_masters": tally.between} if tally else {}
     return {"bound": rounded_up(bound, 6), "within_tolerance": bound <= tolerance, **counts}
 
@@ -318,13 +314,21 @@ def _write_fonts(
         path = paths[flavour]
         with writing(path):
             if axis is None:
-                from ...writers.font.variable_font import to_variable_font
+                from ...writers.font.variable_font import flavour_of, to_variable_font
 
                 assert isinstance(source, Font)
                 family = None if spec.keep_name else spec.family_of(source)
-                data, facts = to_variable_font(
-                    source, redrawn, flavour, tolerance=tolerance, family=family, with_contours=False
-                )
+                if flavour == flavour_of(source):
+                    data, facts = to_variable_font(
+                        source, redrawn, flavour, tolerance=tolerance, family=family, with_contours=False
+                    )
+                else:
+                    from ...writers.font.other_outlines import to_other_outlines
+
+                    data, facts = to_other_outlines(
+                        source, redrawn, flavour, tolerance=tolerance, rest=(1 - SHARE) * tolerance, family=family,
+                        with_contours=False,
+                    )  # fmt: skip
             else:
                 from ...writers.font.new_variable_font import to_new_variable_font
 

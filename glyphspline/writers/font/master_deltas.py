@@ -98,6 +98,13 @@ class StoredGlyph:
     tally: Tally | None = None
 
 
+def bound_of(glyph: StoredGlyph, redrawn: Redrawn) -> float:
+    """A bound of a stored glyph's distance from its source. Where its arcs were not compared with the source, what is
+    certified and how far it is stored add up.
+    """
+    return max(redrawn.bounds, default=0.0) + glyph.distance if glyph.bound is None else glyph.bound
+
+
 def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: FloatArray | None = None) -> IntArray:
     """(K, N, 2) the default's points and a delta for each region, in steps of 1/``parts`` unit.
 

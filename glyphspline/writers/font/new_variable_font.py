@@ -76,10 +76,10 @@ def to_new_variable_font(
     given = {names[name]: name for name in redrawn}
     styles = _styles(sources, values)
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
-    _add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
+    add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
     drawn = MadeOnDemand(given, lambda stored: _clockwise(redrawn[given[stored]]))
     data, summary = to_variable_font(
-        _opened(font, default.path), drawn, "ttf", tolerance=tolerance, with_contours=with_contours
+        opened(font, default.path), drawn, "ttf", tolerance=tolerance, with_contours=with_contours
     )
     glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
     missed = {given[stored]: reason for stored, reason in summary.left.items()}
@@ -128,7 +128,7 @@ def _add_axis(font: TTFont, design: DesignAxis, instances: Mapping[str, float], 
     set_default_weight_width_slant(font, {design.tag: design.default})
 
 
-def _add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
+def add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
     """``gvar`` with the advances of glyphs, and points that do not move yet; the glyphs are simple afterwards."""
     glyf, metrics = font["glyf"], font["hmtx"].metrics
     # What has a component that varies would vary with it.
@@ -148,7 +148,8 @@ def _add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
         for region, delta in zip(glyph.regions.tolist(), steps[1:, 0].tolist(), strict=True):
             deltas = [(0, 0)] * count
             deltas[1 - PHANTOMS] = tuple(delta)
-            variations[name].append(TupleVariation({glyph.axes[0].tag: tuple(region[0])}, deltas))
+            axes = {axis.tag: tuple(own) for axis, own in zip(glyph.axes, region, strict=True) if own[1]}
+            variations[name].append(TupleVariation(axes, deltas))
     FontBuilder(font=font).setupGvar(variations)
 
 
@@ -161,7 +162,8 @@ def _clockwise(new: Redrawn) -> Redrawn:
     return replace(new, contours=tuple(contour.reversed() for contour in new.contours), inner=inner)
 
 
-def _opened(font: TTFont, path: Path) -> Font:
+def opened(font: TTFont, path: Path) -> Font:
+    """A font that is being built, as a source."""
     file = BytesIO()
     font.save(file, reorderTables=False)
     return Font(path, file.getvalue(), 0, None)

@@ -37,7 +37,7 @@ of them, are exact. Any fraction takes five bytes."""
 LONGEST = 65535
 """Bytes of the longest char string that readers have to take."""
 
-OUTLINES = {"CFF2": "otf", "glyf": "ttf"}
+OUTLINES: dict[str, Flavour] = {"CFF2": "otf", "glyf": "ttf"}
 """The tables whose glyphs can be replaced, and the format of the font that has them."""
 
 
@@ -93,7 +93,8 @@ def to_variable_font(
         OutputError: the font is not variable, or has the other kind of outlines.
         GlyphsplineError: the font has no such glyph.
     """
-    check_flavour(source, flavour)
+    if (own := flavour_of(source)) != flavour:
+        raise OutputError(f"has the outlines of {own}, not of {flavour}", font=str(source.path))
     file = BytesIO()
     glyphs: dict[str, StoredGlyph] = {}
     composites, left = [], {}
@@ -143,11 +144,11 @@ def to_variable_font(
     return file.getvalue(), VariableSummary(glyphs, tuple(composites), left)
 
 
-def check_flavour(source: Font, flavour: Flavour) -> None:
-    """Refuse to write outlines of the other kind.
+def flavour_of(source: Font) -> Flavour:
+    """Which outlines a variable font has.
 
     Raises:
-        OutputError: the font is not variable, or has other outlines.
+        OutputError: the font is not variable, or has neither.
     """
     if not source.axes:
         raise OutputError("is not variable: it has no masters", font=str(source.path))
@@ -155,10 +156,7 @@ def check_flavour(source: Font, flavour: Flavour) -> None:
     table = next((tag for tag in OUTLINES if tag in tables), None)
     if table is None:
         raise OutputError("has neither CFF2 nor glyf outlines", font=str(source.path))
-    if OUTLINES[table] != flavour:
-        article = "an" if flavour == "otf" else "a"
-        possible = f"its masters can be written as {OUTLINES[table]}, which replaces them, or as ufo"
-        raise OutputError(f"has {table} outlines, not those of {article} {flavour}: {possible}", font=str(source.path))
+    return OUTLINES[table]
 
 
 def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
