@@ -38,6 +38,14 @@ SMALL = 3.0
 HOPE = 1.5
 """Tolerances by which samples move at most where it is worth while to look for places on the grid."""
 
+WIDER = 3
+"""Moves beyond the tolerance that are tried at most, those that move curves least, to say what a joint needs."""
+
+GRID, STILL, STILL_KINKS = "is mended by no move on the grid", "is still found", "still kinks"
+BEYOND = "is beyond the tolerance"
+WEAK = (None, GRID, STILL, STILL_KINKS)
+"""Reasons why a joint is left that are only given if nothing else is in the way."""
+
 REACH = 2
 """Segments from one joint of a group to the next at most."""
 
@@ -98,9 +106,17 @@ class Group:
     why: str | None = None
     needs: float | None = None
 
+    def blame(self, why: str | None) -> None:
+        """Say why it is left, unless something better is known."""
+        if self.why in WEAK:
+            self.why = why
+
     def next(self, why: str | None = None) -> None:
         """Give up the proposal for the next one."""
-        self.why = why or self.why
+        if why in WEAK:
+            self.blame(why or self.why)
+        else:
+            self.why = why
         self.now = next(self.ways, None)
 
     def touches(self, contour: int, segment: int, segments: int) -> bool:
@@ -145,8 +161,9 @@ def smoothed(
             if group.now is not None:
                 mended.update({place: left[place] for place in own})
                 continue
+            needs = group.needs if group.why == BEYOND else None
             for place in own:
-                left[place] = replace(left[place], why=group.why or "is mended by no move", needs=group.needs)
+                left[place] = replace(left[place], why=group.why or "is mended by no move", needs=needs)
             if len(own) > 1:
                 half = (len(own) + 1) // 2
                 pending += [(group.contour, part) for part in (group.joints[:half], group.joints[half:])]
@@ -207,7 +224,7 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
         first: the contour as it was. contour: as it is now.
     """  # fmt: skip
     layout = Layout(contour)
-    seen, nearest = set[bytes](), None
+    seen, wider = set[bytes](), []
     for exact, ways in groupby(WAYS, key=lambda way: way.exact):
         later = []
         for way in ways:
@@ -220,12 +237,12 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
             points = None
             if stretch.farthest(x) <= HOPE * design.tolerance:
                 points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
-            elif nearest is None or stretch.farthest(x) < nearest[0]:
-                nearest = stretch.farthest(x), stretch, bounds, x, exact
-            if points is None or points.tobytes() in seen:
+            else:
+                wider.append((stretch.farthest(x), stretch, bounds, x, exact))
+            if points is None or points.tobytes() in seen or not _is_mended(layout, group, points, exact, design):
                 continue
             seen.add(points.tobytes())
-            proposal = _proposal(group, first, layout, points, exact, design)
+            proposal = _proposal(group, first, layout, points, design)
             if proposal is None:
                 continue
             if proposal.change <= SMALL * design.em / 1000:
@@ -233,38 +250,38 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
             else:
                 later.append(proposal)
         yield from sorted(later, key=lambda each: each.change)
-    if group.needs is None and nearest is not None and group.why is None:
-        least, stretch, bounds, x, exact = nearest
-        points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
-        wide = design._replace(tolerance=least)
-        if (proposal := _proposal(group, first, layout, points, exact, wide)) is not None:
-            group.needs = proposal.distance
-        group.why = "is beyond the tolerance"
+    for least, stretch, bounds, x, exact in sorted(wider, key=lambda each: each[0])[:WIDER]:
+        if group.needs is None and group.why in WEAK:
+            points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
+            if _is_mended(layout, group, points, exact, design):
+                found = _proposal(group, first, layout, points, design._replace(tolerance=least))
+                group.needs = found.distance if found else group.needs
+                group.blame(BEYOND)
 
 
 def _proposal(
-    group: Group, first: MasterContour, layout: Layout, points: FloatArray, exact: bool, design: Design
+    group: Group, first: MasterContour, layout: Layout, points: FloatArray, design: Design
 ) -> Proposal | None:
-    """A contour with moved points, if joints turn by no more than they may and it is within the tolerance."""
+    """A contour with moved points, if it is within the tolerance."""
     new, old = MasterContour(points, layout.degrees), layout.points
-    if group.kind == "kink" and not _is_mended(layout, group, new, exact, design):
-        group.why = group.why or "is mended by no move on the grid"
-        return None
     distance = float(distances(first, new, design).max())
     if distance > design.tolerance:
         group.needs = min(group.needs or np.inf, distance)
-        group.why = group.why or "is beyond the tolerance"
+        group.blame(BEYOND)
         return None
     moved = np.flatnonzero((points != old).any(axis=(0, 2))).tolist()
     return Proposal(points, moved, distance, float(np.hypot(*(points - old).reshape(-1, 2).T).max()))
 
 
-def _is_mended(layout: Layout, group: Group, new: MasterContour, exact: bool, design: Design) -> bool:
-    """Whether the joints of a group turn by no more than they may, at the places."""
-    turns = np.radians(turns_of(np.tensordot(design.places, joint_controls(new)[:, group.joints], axes=1)))
-    for joint, own in zip(group.joints, turns.T, strict=True):
-        if not (np.abs(own) <= turns_allowed(layout, joint, group.values[joint], exact, design)).all():
-            return False
+def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, design: Design) -> bool:
+    """Whether the joints of a group turn by no more than they may, at the places; of a jump that is checked later."""
+    if group.kind == "kink":
+        controls = joint_controls(MasterContour(points, layout.degrees))[:, group.joints]
+        turns = np.radians(turns_of(np.tensordot(design.places, controls, axes=1)))
+        for joint, own in zip(group.joints, turns.T, strict=True):
+            if not (np.abs(own) <= turns_allowed(layout, joint, group.values[joint], exact, design)).all():
+                group.blame(GRID)
+                return False
     return True
 
 
@@ -338,7 +355,7 @@ def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) ->
             near = [group for group in own if group.touches(contour, segment, len(bounds))]
             if near:
                 worst = max(near, key=lambda group: group.now.distance if group.now else 0.0)
-                found.append((worst, "is beyond the tolerance together with its neighbour"))
+                found.append((worst, f"{BEYOND} together with its neighbour"))
     return _once(found)
 
 
@@ -347,7 +364,7 @@ def _found_new(trial: Masters, groups: Sequence[Group], before: State, after: St
     found = []
     for group in groups:
         if group.now and any((group.contour, joint) in after.values[group.kind] for joint in group.joints):
-            found.append((group, "still kinks" if group.kind == "kink" else "is still found"))
+            found.append((group, STILL_KINKS if group.kind == "kink" else STILL))
     for what, contour, segment, _ in after.found - before.found:
         count = len(trial.contours[contour])
         own = [group for group in groups if group.touches(contour, segment, count)]

@@ -407,3 +407,29 @@ def test_bounds_hold_where_curves_slip_along_themselves(corner: float) -> None:
         seen = gs.compare(gs.Outline("a", contours=[one]), gs.Outline("a", contours=[other])).seen
         assert seen <= bounds.max()
     assert bounds.max() < 8 + 2 * corner
+
+
+def test_places_on_the_grid_are_tried_again_for_turns_that_rounding_makes() -> None:
+    corners = [
+        [(-64, -71), (-64, -18), (0, 0), (88, 24), (88, -300)],
+        [(-112, -131), (-112, -125), (-102, -123), (9, -101), (9, -300)],
+        [(-60, -122), (-60, -108), (-28, -103), (68, -90), (68, -300)],
+        [(-80, -133), (-80, -128), (-71, -126), (75, -110), (75, -300)],
+    ]
+    contour = MasterContour(np.array(corners, dtype=np.float64), np.array([2, 1, 1, 1]))
+    regions = np.array([[[0, 1, 1], [0, 0, 0]], [[0, 0, 0], [0, 1, 1]], [[0, 1, 1], [0, 1, 1]]], dtype=np.float64)
+    axes = (DesignAxis("opsz", "Size", 9, 9, 144), WEIGHT)
+    masters = gs.Masters("a", axes=axes, regions=regions, contours=[contour], advances=np.zeros(4))
+    mended, (change,) = gs.mend(masters, tolerance=3.0)
+    assert change.is_mended
+    assert change.moved <= 3
+    assert mended.contours[0].points.shape == contour.points.shape
+
+
+def test_a_joint_with_a_short_handle_says_what_it_needs() -> None:
+    bold = [*BOLD]
+    bold[4] = (306, 503)
+    (change,) = gs.mend(family_of(SHAPE, bold), tolerance=4.0)[1]
+    assert change.why == "is beyond the tolerance"
+    assert change.needs is not None
+    assert gs.mend(family_of(SHAPE, bold), tolerance=1.01 * change.needs)[1][0].is_mended

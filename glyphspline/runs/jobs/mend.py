@@ -95,9 +95,10 @@ def into_of(source: Any, masters: Masters) -> Into:
     from ...writers.ufo_folder import places_of
 
     own = {index for index in source.own_contours(masters.name) if index is not None}
+    fixed = {number: OF_COMPONENT for number in range(count) if number not in own}
     if {each.place for each in source.drawings(masters.name)} != set(places_of(masters)):
-        return Into(dict.fromkeys(range(count), "has masters in which only its components are drawn"))
-    return Into({number: OF_COMPONENT for number in range(count) if number not in own})
+        fixed |= dict.fromkeys(own, "has masters in which only its components are drawn")
+    return Into(fixed)
 
 
 @dataclass
