@@ -24,7 +24,7 @@ import numpy as np
 
 from ..arrays import ascending
 from ..compiled import compiled
-from ..curves.cubics import extent, length, nearest, section
+from ..curves.cubics import extent, jet, length, nearest, section
 from ..curves.pairing import ROUNDING, apart
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.segments import all_cubics
@@ -101,26 +101,14 @@ def from_box(box: FloatArray, x: float, y: float) -> float:
 
 
 @compiled
-def reached(cubic: FloatArray, guess: float, x: float, y: float) -> tuple[float, float]:
-    """The parameter of a cubic (4, 2) near a guess that is nearest a point, and its distance; never worse than the
-    guess."""
-    z = nearest(cubic, 0.0, 1.0, guess, x, y)
-    px, py = point(cubic, z)
+def reached(cubics: FloatArray, s: int, guess: float, x: float, y: float) -> tuple[float, float]:
+    """The parameter of segment s near a guess that is nearest a point, and its distance; never worse than the guess."""
+    z = nearest(cubics[s], 0.0, 1.0, guess, x, y)
+    px, py, _, _, _, _ = jet(cubics, s, z)
     d = length(px - x, py - y)
-    px, py = point(cubic, guess)
+    px, py, _, _, _, _ = jet(cubics, s, guess)
     before = length(px - x, py - y)
     return (z, d) if d <= before else (guess, before)
-
-
-@compiled
-def point(cubic: FloatArray, z: float) -> tuple[float, float]:
-    """The point of a cubic (4, 2) at a parameter."""
-    y = 1.0 - z
-    a, b, c, d = y * y * y, 3.0 * y * y * z, 3.0 * y * z * z, z * z * z
-    return (
-        a * cubic[0, 0] + b * cubic[1, 0] + c * cubic[2, 0] + d * cubic[3, 0],
-        a * cubic[0, 1] + b * cubic[1, 1] + c * cubic[2, 1] + d * cubic[3, 1],
-    )
 
 
 @compiled
@@ -142,15 +130,14 @@ def nearest_on(
     Args:
         places: (STACK, 2) scratch array.
     """
-    cubic, bend = chains.cubics[s], chains.bends[s]
-    at = np.nan
+    cubics, bend, at = chains.cubics, chains.bends[s], np.nan
     places[0, 0], places[0, 1] = 0.0, 1.0
     top = 0
     while top >= 0:
         a, b = places[top, 0], places[top, 1]
         top -= 1
-        ax, ay = point(cubic, a)
-        bx, by = point(cubic, b)
+        ax, ay, _, _, _, _ = jet(cubics, s, a)
+        bx, by, _, _, _, _ = jet(cubics, s, b)
         ux, uy = bx - ax, by - ay
         whole = ux * ux + uy * uy
         share = min(max(((x - ax) * ux + (y - ay) * uy) / whole, 0.0), 1.0) if whole > 0.0 else 0.0
@@ -161,7 +148,7 @@ def nearest_on(
             continue
         guess = a + share * (b - a)
         if near < best:
-            z, d = reached(cubic, guess, x, y)
+            z, d = reached(cubics, s, guess, x, y)
             if d < best:
                 at, best = z, d
         if off > allowed and top + 2 < STACK:
@@ -185,12 +172,12 @@ def nearest_of_outline(
         s, z: where to begin. Where several places are as near, as far as that matters, the one near there is taken.
         places: (STACK, 2) scratch array.
     """
-    at, best = reached(chains.cubics[s], z, x, y)
+    at, best = reached(chains.cubics, s, z, x, y)
     segment = s
     for step in range(-1, 2, 2):
         other = neighbour(chains, s, step)
         if other != s and from_box(chains.boxes[other], x, y) < best:
-            guess, d = reached(chains.cubics[other], 0.0 if step > 0 else 1.0, x, y)
+            guess, d = reached(chains.cubics, other, 0.0 if step > 0 else 1.0, x, y)
             if d < best:
                 segment, at, best = other, guess, d
     for g in range(len(chains.groups)):
@@ -203,7 +190,7 @@ def nearest_of_outline(
                 guess, d = nearest_on(chains, k, x, y, best, slack, places)
                 if d < best:
                     segment, at, best = k, guess, d
-    at, best = reached(chains.cubics[segment], at, x, y)  # where the guess was poor, Newton's steps were too few
+    at, best = reached(chains.cubics, segment, at, x, y)  # where the guess was poor, Newton's steps were too few
     return segment, at, best
 
 
@@ -246,7 +233,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
         for i in range(len(one.cubics)):
             e = ends[first + i]
             bounds[first + i] = section_bound(
-                one.cubics[i], 0.0, 1.0, other, int(e[0]), e[1], int(e[2]), e[3], limit, sections
+                one.cubics, i, 0.0, 1.0, other, int(e[0]), e[1], int(e[2]), e[3], limit, sections
             )
     halvings, bound = 0, 0.0
     order = ascending(-bounds)
@@ -257,7 +244,6 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             break
         side = 0 if at < m else 1
         one, other, i = (old, new, at) if side == 0 else (new, old, at - m)
-        cubic = one.cubics[i]
         marks[0, 0], marks[0, 1], marks[0, 6] = 0.0, 1.0, bounds[at]
         for q in range(4):
             marks[0, 2 + q] = ends[at, q]
@@ -271,18 +257,18 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
                 continue
             halvings += 1
             middle = (low + high) / 2
-            x, y = point(cubic, middle)
+            x, y, _, _, _, _ = jet(one.cubics, i, middle)
             s0, z0, s1, z1 = int(marks[top, 2]), marks[top, 3], int(marks[top, 4]), marks[top, 5]
             s, z, d = nearest_of_outline(other, x, y, s0, z0, slack, places)
             if d > row[SEEN]:
                 note(row, d, x, y, side, one.owners[i], other, s, z)
                 limit = max(bound, d + max(least, SHARP * d))
             marks[top, 1], marks[top, 4], marks[top, 5] = middle, s, z
-            marks[top, 6] = section_bound(cubic, low, middle, other, s0, z0, s, z, limit, sections)
+            marks[top, 6] = section_bound(one.cubics, i, low, middle, other, s0, z0, s, z, limit, sections)
             top += 1
             marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = middle, high, s, z
             marks[top, 4], marks[top, 5] = s1, z1
-            marks[top, 6] = section_bound(cubic, middle, high, other, s, z, s1, z1, limit, sections)
+            marks[top, 6] = section_bound(one.cubics, i, middle, high, other, s, z, s1, z1, limit, sections)
     row[BOUND] = max(bound, row[SEEN]) + ROUNDING * max(extent(old.cubics), extent(new.cubics))
 
 
@@ -292,23 +278,23 @@ def note(
 ) -> None:
     """Keep a point that is farther from the other outline than those before."""
     row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, contour
-    row[NEAR_X], row[NEAR_Y] = point(other.cubics[s], z)
+    row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
 
 
 @compiled
 def section_bound(
-    cubic: FloatArray, low: float, high: float, other: Chains, s0: int, z0: float, s1: int, z1: float, limit: float,
-    sections: FloatArray,
+    cubics: FloatArray, i: int, low: float, high: float, other: Chains, s0: int, z0: float, s1: int, z1: float,
+    limit: float, sections: FloatArray,
 ) -> float:  # fmt: skip
-    """Bound of the distance of the points of a section of a cubic from an outline.
+    """Bound of the distance of the points of a section of a segment from an outline.
 
     Args:
-        cubic: (4, 2), between parameters ``low`` and ``high``.
+        cubics: (m, 4, 2), of which number i between parameters ``low`` and ``high``.
         s0, z0, s1, z1: segments of the outline, and parameters, nearest to the section's ends.
         limit: bounds up to this are small enough: no smaller one is sought.
         sections: (2, 1, 4, 2) scratch array.
     """
-    best, n = np.inf, other.offsets[other.owners[s0] + 1] - other.offsets[other.owners[s0]]
+    cubic, best, n = cubics[i], np.inf, other.offsets[other.owners[s0] + 1] - other.offsets[other.owners[s0]]
     ahead = (s1 - s0) % n
     step, joints = (1, ahead) if 2 * ahead <= n else (-1, n - ahead)
     if n == 2 and 2.0 * z0 < 1.0:  # both ways have one joint: that of the nearer end
@@ -320,7 +306,7 @@ def section_bound(
             segment, stop, cut = other.cubics[s], z1, high
             if k < joints:
                 stop = 1.0 if step > 0 else 0.0
-                px, py = point(segment, stop)
+                px, py, _, _, _, _ = jet(other.cubics, s, stop)
                 cut = nearest(cubic, x, high, x + (high - x) / (joints + 1 - k), px, py)
             best = max(best, paired(cubic, x, cut, segment, z, stop, sections))
             if best > limit and k < joints:
@@ -328,11 +314,11 @@ def section_bound(
                 break
             x, z, s = cut, 1.0 - stop, neighbour(other, s, step)
     if best > limit:
-        x, y = point(cubic, high)
+        x, y, _, _, _, _ = jet(cubics, i, high)
         z = nearest(other.cubics[s0], 0.0, 1.0, z0, x, y)
         best = min(best, paired(cubic, low, high, other.cubics[s0], z0, z, sections))
         if s0 != s1 and best > limit:
-            x, y = point(cubic, low)
+            x, y, _, _, _, _ = jet(cubics, i, low)
             z = nearest(other.cubics[s1], 0.0, 1.0, z1, x, y)
             best = min(best, paired(cubic, low, high, other.cubics[s1], z, z1, sections))
     return best

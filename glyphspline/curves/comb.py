@@ -16,16 +16,10 @@ Local parameter by which a sample moves off a point of zero speed: the comb show
 TABLE = 16
 """Number of chords that measure a piece's arc length; half as many make teeth visibly uneven on an S-shaped piece."""
 
-LEAST = 2
-"""Minimum number of intervals of a piece that is not tame: one interval shows no curvature inside."""
-
 TAME_RATIO, TAME_SINE = 1.2, 0.2
 """A piece is tame if the lengths of its control polygon's legs and the sines of the turns between them are within these
 limits. Its speed is then within a fifth of constant and its curvature nearly linear: samples at even parameters are
 even along the curve, and a short piece needs none inside. Most pieces are tame where vertices are dense."""
-
-TIE = 1e-6
-"""Fraction of an interval that is ignored when their number is rounded up: rounding errors do not decide it."""
 
 TINY = 1e-280
 """Squares below this have lost digits."""
@@ -56,7 +50,9 @@ def sampled(cubics: FloatArray, spacing: float, angle: float, flat: float) -> tu
         even = length > 0.0
         if not even:
             wanted = measure(cubics, j, table, spacing, angle)
-        n = max(int(np.ceil(wanted - TIE)), 1 if even else LEAST)
+        # A piece that is not tame has two intervals at least: one shows no curvature inside. A millionth of an interval
+        # is ignored where their number is rounded up: rounding errors do not decide it.
+        n = max(int(np.ceil(wanted - 1e-6)), 1 if even else 2)
         stop = starts[j] + n + 1
         samples = grown(samples, stop)
         if even:

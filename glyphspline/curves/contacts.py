@@ -16,9 +16,6 @@ from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .cubics import jet, length
 
-TIED = 1e-8
-"""Directions nearer to each other than this, in radians, are the same."""
-
 STEPS, HALVINGS = 32, 50
 """Points of a piece that are looked at for where it leaves the circle first. Of an interval of parameters, for the
 point at which a strand crosses the circle."""
@@ -49,7 +46,8 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
                 if small < radius and one.reach(a, a_end) > 0.1 * radius:
                     continue
             along = other.way(b, b_end) >= 0
-            circles = [(small, TIED)]
+            # Directions nearer to each other than this, in radians, are the same.
+            circles = [(small, 1e-8)]
             # In a point, strands may cross plainly, at an angle that chord errors do not change. Then a smaller circle
             # decides, which leaves out other crossings, as at the tip of a fold.
             if (a, b) == (a_end, b_end) and radius / 200 < small:

@@ -26,9 +26,6 @@ from .cubics import extent, split
 FLAT = 1e-9
 """Share of a glyph's extent by which the chords that are compared may differ from the curves."""
 
-EXACT = 1e-12
-"""For two straight pieces, instead: what rounding leaves of a distance of 0, as a share of the extent."""
-
 DEEPEST = 24
 """Most halvings of a piece: from an extent of 1, its chords are nearer than ``FLAT`` after 15."""
 
@@ -122,7 +119,8 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                 continue
             s, t = min(i, j), max(i, j)  # the order of the contours
             # An end of a chord lies on another chord within this many chord errors of it.
-            touch = 4.0 * flat if deep[s] > 0 or deep[t] > 0 else EXACT / FLAT * flat
+            # For two straight pieces, instead: what rounding leaves of a distance of 0, as a share of the extent.
+            touch = 4.0 * flat if deep[s] > 0 or deep[t] > 0 else 1e-12 / FLAT * flat
             A[0], B[0] = cubics[piece[s]], cubics[piece[t]]
             marks[0, 0], marks[0, 1] = 0, 0
             marks[0, 2] = (

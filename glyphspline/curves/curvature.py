@@ -10,19 +10,9 @@ import numpy as np
 from ..types import BoolArray, FloatArray, IntArray
 from .bezier import as_cubic, cross
 
-SCALE_PERCENTILE = 80.0
-"""Percentage of the arc length whose curvature is within the robust scale. Near 100, rounded corners (a tenth of the
-length of many outlines) flatten all other teeth; near 50, ordinary bowls are cut."""
-
-STRAIGHT = 1e-9
-"""Curvature times size below which the scale ignores a sample as straight; a larger value drops flat curves."""
-
 BEND, REACH, LEAST = np.radians(45), 1 / 40, 1 / 20
 """A bowl turns by less than ``BEND`` within ``REACH`` em on both sides, and has a radius of ``LEAST`` em or more. Round
 dots are none, and counters of e and a of text faces are."""
-
-LARGEST = 2.0
-"""Curvature of the sharpest bowl in units of the scale. At 1, other bowls of brush faces have hardly any teeth."""
 
 ANGLE = np.radians(15)
 """Default turn between samples. A larger value shows straight lines between the tips of a rounded corner."""
@@ -72,7 +62,7 @@ def comb(pieces: FloatArray, spacing: float, *, angle: float = ANGLE) -> Comb:
     return Comb(samples[:, :2], samples[:, 2:4], samples[:, 4], samples[:, 5], starts)
 
 
-def robust_scale(combs: Iterable[Comb], percentile: float = SCALE_PERCENTILE) -> float:
+def robust_scale(combs: Iterable[Comb], percentile: float = 80.0) -> float:
     """A curvature, in 1/unit, that represents many combs; teeth and colours are relative to it.
 
     It is the percentile of |κ| over the arc length of all that is not straight; zero if nothing is curved. Weights by
@@ -83,7 +73,8 @@ def robust_scale(combs: Iterable[Comb], percentile: float = SCALE_PERCENTILE) ->
     for item in combs:
         size = float(np.ptp(item.points, axis=0).max()) if len(item.points) else 0.0
         magnitude = np.abs(item.curvature)
-        curved = magnitude * size > STRAIGHT
+        # Curvature times size below which the scale ignores a sample as straight; a larger value drops flat curves.
+        curved = magnitude * size > 1e-9
         magnitudes.append(magnitude[curved])
         weights.append(item.weights[curved])
     values, lengths = np.concatenate(magnitudes), np.concatenate(weights)
@@ -103,7 +94,8 @@ def shared_scale(combs: Iterable[Comb], em: float) -> float:
     every = list(combs)
     found = robust_scale(every)
     largest = max([float(np.abs(item.curvature[bowls(item, em)]).max(initial=0.0)) for item in every], default=0.0)
-    return max(found, largest / LARGEST) if found else 0.0  # of lines, curvature is rounding
+    # Curvature of the sharpest bowl in units of the scale. At 1, other bowls of brush faces have hardly any teeth.
+    return max(found, largest / 2.0) if found else 0.0  # of lines, curvature is rounding
 
 
 def bowls(item: Comb, em: float) -> BoolArray:

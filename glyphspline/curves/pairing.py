@@ -82,7 +82,6 @@ def pair_instances(
     slips, no_arc = len(arcs) > 0, np.empty(0)
     work, marks, found = room_for(V)
     for c in range(len(anchor_offsets) - 1):
-        lost = np.nan
         result = results[V * result_offsets[c] : V * result_offsets[c + 1]]
         source = sources[V * source_offsets[c] : V * source_offsets[c + 1]]
         rounding, lost = ROUNDING * max(extent(result), extent(source)), np.nan

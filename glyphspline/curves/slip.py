@@ -33,14 +33,8 @@ from ..types import BoolArray, FloatArray
 from .bezier import split
 from .cubics import length, section
 
-PARTS = 24
-"""Most parts of a chain that are looked at beyond either end of a section."""
-
 FLAT = 1e-9
 """Least extent of a derivative along a chord, as a share of its length, that counts as positive."""
-
-HALVINGS = 4
-"""How often a segment is halved to prove that it has speed."""
 
 SCRATCH = 3
 """Stacks (V, 4, 2) that :func:`slip_bound` works in."""
@@ -138,7 +132,7 @@ def _follow(
     m, part, start = len(chain) // V, scratch[V : 2 * V], scratch[2 * V :]
     near, far = (0, 3) if side else (3, 0)
     at = first
-    for turn in range(PARTS):
+    for turn in range(24):  # so many parts are looked at at most
         if at >= last if side else at <= last:
             return True, True
         s = int(np.floor(at)) if side else int(np.ceil(at)) - 1
@@ -168,7 +162,7 @@ def regular(chain: FloatArray) -> BoolArray:
     """
     good = np.zeros(len(chain), dtype=np.bool_)
     parts = chain[:, None]
-    for halvings in range(HALVINGS + 1):
+    for halvings in range(5):  # a segment is halved so often at most
         if halvings:
             parts = np.concatenate(split(parts), axis=1)
         legs, chords = np.diff(parts, axis=3), parts[..., 3, :] - parts[..., 0, :]

@@ -25,18 +25,9 @@ from ..outlines.contour_arrays import ContourArrays, cubic_contours, offsets_of
 from ..outlines.segments import all_cubics, contour_cubics
 from ..types import BoolArray, FloatArray, IntArray
 
-UNCOUNTED = 1_000
-"""For how many crossings those count that are not counted."""
-
-REACH = 40.0
-"""Length along the outline over which it steps back to each side of a crossing, in tolerances."""
-
 PARTS, MOST_PARTS = 8, 64
 """Pieces into which a strand of that length is cut at least, each stepping back by its own amount, and into which a
 segment is cut at most."""
-
-MOST = 200
-"""Crossings of a glyph from which contours step back: a tangle of more is none the better for it."""
 
 
 class Changes(NamedTuple):
@@ -54,7 +45,8 @@ class Changes(NamedTuple):
     @property
     def number(self) -> int:
         """Number of changes: a crossing of two contours counts twice, and crossings that are not counted as many."""
-        return int(np.where(self.new_crossings < 0, UNCOUNTED, self.new_crossings).sum() + self.collapsed.sum())
+        # Crossings that are not counted count as a thousand.
+        return int(np.where(self.new_crossings < 0, 1_000, self.new_crossings).sum() + self.collapsed.sum())
 
     @property
     def crosses(self) -> BoolArray:
@@ -122,12 +114,14 @@ def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tol
     No point of a contour is farther than ``shift`` from its source, as a piece is within the largest distance of its
     Bézier points.
     """
-    reach = REACH * tolerance
+    # Length along the outline over which it steps back to each side of a crossing, in tolerances.
+    reach = 40.0 * tolerance
     found, _ = crossings(all_cubics(written), written.offsets, np.array([0, written.num_contours]))
     given, results = all_cubics(source), all_cubics(written)
     strands = [_Strand(given[a:b], reach) for a, b in zip(source.offsets, source.offsets[1:], strict=False)]
     moves: list[list[tuple[float, FloatArray]]] = [[] for _ in strands]
-    for c, d, a, _ in found[:MOST].tolist():
+    # Crossings of a glyph from which contours step back: a tangle of more is none the better for it.
+    for c, d, a, _ in found[:200].tolist():
         own, other = strands[int(c)], strands[int(d)]
         segment = written.offsets[int(c)] + int(a)
         point = evaluate(results[segment : segment + 1], np.array([a % 1]))[0]

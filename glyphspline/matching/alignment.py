@@ -10,12 +10,6 @@ from ..types import FloatArray, IntArray
 REACH = 24
 """Landmarks that may be without a partner in a row, and one more."""
 
-TURN = 0.5
-"""Cost of two arcs between neighbouring pairs whose turns differ by half a circle; it counts by its square."""
-
-STEP = 8
-"""Pieces of one arc, at most, that are one step of the alignment; more if one arc has many more than the other."""
-
 
 @compiled
 def cheapest_pairs(
@@ -58,7 +52,9 @@ def cheapest_pairs(
                         if before < np.inf:
                             shares = (a[i, 1] - a[i - di, 1]) - (b[j, 1] - b[j - dj, 1])
                             turn = ((a[i, 2] - a[i - di, 3]) - (b[j, 2] - b[j - dj, 3])) / np.pi
-                            cost = before + left_a + left_b + stretch * abs(shares) + TURN * turn * turn
+                            # Cost of two arcs between neighbouring pairs whose turns differ by half a circle; it counts
+                            # by its square.
+                            cost = before + left_a + left_b + stretch * abs(shares) + 0.5 * turn * turn
                             if cost < best:
                                 best, at = cost, di * (REACH + 1) + dj
                         left_b += b[j - dj, 0]
@@ -106,7 +102,8 @@ def elastic_nodes(one: FloatArray, other: FloatArray, alike: FloatArray, gains: 
         (p, 2) indices of nodes, both columns ascending.
     """
     n, m = alike.shape
-    reach = max(STEP, 2 * (max(n, m) // min(n, m) + 1))  # so that there is an alignment, whatever their numbers
+    # Pieces of one arc, at most, that are one step of the alignment; more if one arc has many more than the other.
+    reach = max(8, 2 * (max(n, m) // min(n, m) + 1))  # so that there is an alignment, whatever their numbers
     best, came = np.full((n + 1, m + 1), -np.inf), np.zeros((n + 1, m + 1), dtype=np.int64)
     best[0, 0] = 0.0
     for i in range(1, n + 1):

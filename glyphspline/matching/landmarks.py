@@ -33,9 +33,6 @@ inserted, have none."""
 STRONG = 0.3
 """Weight from which landmarks take part in the search for the surest pair."""
 
-STRAIGHT = 2.0
-"""Degrees of turn up to which a segment is straight."""
-
 SHOWS, REACH = 12.0, 0.06
 """Degrees of turn from which the end of a line or a jump of curvature has its full weight; of a jump those within so
 much of the em."""
@@ -43,9 +40,6 @@ much of the em."""
 HEIGHT, CHORD = 2e-3, 5e-3
 """Of the em: the height by which a contour rises to an extremum and falls again. Of the em: length of the chords whose
 directions are those on both sides of a landmark; less where a segment ends."""
-
-ROUNDING = 0.7
-"""Units by which the direction of a handle may be off at its end: coordinates are often rounded to units."""
 
 NEAR, TILT = (6e-3, 15e-3), 2.5
 """Of the em: a smooth joint nearer than the first to an extremum stands for it, and one nearer than the second if its
@@ -92,12 +86,14 @@ class Landmarks:
     def _find(self, first_arms: FloatArray, last_arms: FloatArray) -> None:
         m, line = len(self.cubics), self.contour.degrees == 1
         joints = np.arange(float(m))
-        one, other = (np.arctan2(ROUNDING, np.hypot(*arms.T)) for arms in (first_arms, last_arms))
+        # Units by which the direction of a handle may be off at its end: coordinates are often rounded to units.
+        one, other = (np.arctan2(0.7, np.hypot(*arms.T)) for arms in (first_arms, last_arms))
         degrees = np.degrees(np.maximum(np.abs(self._turns) - one - np.roll(other, 1), 0.0))
         corner: BoolArray = degrees >= CORNER_ANGLE
         # Degrees of turn from which a corner is as weighty as a corner can be.
         share = np.clip((degrees - CORNER_ANGLE) / (60.0 - CORNER_ANGLE), 0, 1)
-        straight = line | (np.degrees(self._bent) < STRAIGHT)
+        # Degrees of turn up to which a segment is straight.
+        straight = line | (np.degrees(self._bent) < 2.0)
         end, jump = self._breaks()
         smooth = np.where(straight != np.roll(straight, 1), STRAIGHT_END * end, BREAK * jump)
         smooth = np.maximum(smooth, np.where(line != np.roll(line, 1), DRAWN_END, 0.0))

@@ -24,14 +24,8 @@ MOST_COST = 0.7
 """Cost of a pair of contours, a landmark, from which they are not taken for the same."""
 
 
-FLAT = 0.02
-"""Share of the area of a circle of the same length below which the sign of a contour's area says nothing."""
-
 FARTHEST = 0.95
 """Largest distance of the features of two contours that are a pair, in the outlines' sizes."""
-
-CORNERS = 0.01
-"""Weight of the number of corners: so far apart, in the outlines' sizes, are contours that have one more or less."""
 
 
 def match_masters(
@@ -141,9 +135,10 @@ def _features(contours: Sequence[Landmarks]) -> FloatArray:
         spread = np.sqrt(weights @ (away * away))
         mixed = weights @ (away[:, 0] * away[:, 1])
         signed = area(np.ascontiguousarray(of.cubics)) / (size[0] * size[1])
+        # A corner more or less counts as a distance of 0.01 outlines' sizes.
         rows.append([
             np.copysign(np.sqrt(abs(signed)), signed), *centre, *(2 * spread),
-            np.copysign(np.sqrt(abs(mixed)), mixed), CORNERS * len(of.corners),
+            np.copysign(np.sqrt(abs(mixed)), mixed), 0.01 * len(of.corners),
         ])  # fmt: skip
     return np.array(rows)
 
@@ -151,7 +146,8 @@ def _features(contours: Sequence[Landmarks]) -> FloatArray:
 def _sign(of: Landmarks) -> int:
     """Of the area: 0 if there is too little to tell."""
     own = area(np.ascontiguousarray(of.cubics))
-    return int(np.sign(own)) if abs(own) > FLAT * of.length**2 / (4 * np.pi) else 0
+    # Share of the area of a circle of the same length below which the sign of a contour's area says nothing.
+    return int(np.sign(own)) if abs(own) > 0.02 * of.length**2 / (4 * np.pi) else 0
 
 
 def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contour]:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiled import compiled
+from ..curves.comb import control_length
 from ..curves.cubics import directions, jet, turns
 from ..curves.nearest import search_place
 from ..types import BoolArray, FloatArray, IntArray
@@ -135,10 +136,7 @@ def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     """
     table, places, firsts = [0.0], [], np.zeros(len(cubics) + 1, dtype=np.int64)
     for s in range(len(cubics)):
-        scale = 0.0
-        for k in range(3):
-            dx, dy = cubics[s, k + 1, 0] - cubics[s, k, 0], cubics[s, k + 1, 1] - cubics[s, k, 1]
-            scale += np.sqrt(dx * dx + dy * dy)
+        scale = control_length(cubics[s : s + 1])
         todo = [(0.0, 1.0, _length(cubics, s, 0.0, 1.0), 0)]
         while len(todo) > 0:
             a, b, whole, depth = todo.pop()

@@ -16,9 +16,6 @@ SLIDE = 0.001
 HOPELESS = (1e3, 6.0, 2.0, 1.4, 1.2)
 """A fit is abandoned after round m if its error exceeds entry m, in tolerances. Lower values lose good fits."""
 
-STEPS = 4
-"""Newton steps to a foot, from the foot of the last round."""
-
 LONGEST, SHORTEST = 4 / 3, 1 / 30
 """Lengths between which handles are kept, in chords."""
 
@@ -117,7 +114,7 @@ def project(Q: FloatArray, x0: float, y0: float, c: FloatArray, x: FloatArray, e
     for j in range(1, len(Q) - 1):
         qx, qy = Q[j, 0] - x0, Q[j, 1] - y0
         t = max(x[j], low)
-        for _ in range(STEPS):
+        for _ in range(4):  # Newton steps from the foot of the last round
             px, py = ((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy
             dx, dy = (3 * cx * t + 2 * bx) * t + ax, (3 * cy * t + 2 * by) * t + ay
             speed = dx * dx + dy * dy

@@ -19,7 +19,7 @@ from ...outlines.segments import farthest_joint, is_backward, lasting
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
 from .cubics import fit_between, is_straight
-from .pieces import Pieces, add_piece, add_source, copy_piece, empty_pieces, enlarged, used
+from .pieces import Pieces, add_source, copy_piece, empty_pieces, enlarged, used
 from .settings import Settings
 from .spline_search import fit_spline
 
@@ -142,7 +142,7 @@ def fit_contour(joints: Joints, c: int, settings: Settings) -> Pieces:
         while j < m and not joints.hard[j]:
             j += 1
         if joints.line[i]:
-            count = add_piece(pieces, count, joints, i, j, 0, 0.0)
+            count = add_simplest(joints, i, j, settings, pieces, count)
         else:
             first, cut = count, joints.hard[0] and joints.corner[i + 1 : j].any()
             for whole in range(0 if cut else 1, 2):
@@ -178,11 +178,17 @@ def add_simplest(joints: Joints, i: int, j: int, settings: Settings, pieces: Pie
     closed = i == 0 and j == len(joints.line) and not joints.hard[0]
     straight = not closed and joints.corner[i] and joints.corner[j]
     straight = straight and is_straight(joints.samples, joints.first[i], joints.first[j], settings.near)
+    straight = straight or joints.line[i]
     error = 0.0 if straight else np.inf
     if not (straight or closed or joints.tied[i] or joints.tied[j]):
         error = fit_between(joints, i, j, settings.near, settings.cubic_rounds, pieces.tangents[count])
-    add_piece(pieces, count, joints, i, j, 0 if straight else 1, error)
-    pieces.closed[count] = closed
+    at = pieces.starts[count]
+    pieces.joints[count, 0], pieces.joints[count, 1] = i, j
+    pieces.spans[count], pieces.closed[count], pieces.errors[count] = 0 if straight else 1, closed, error
+    for end, joint in ((0, i), (1, j)):
+        pieces.places[at + end] = joint
+        pieces.vertices[at + end] = joints.samples[:, joints.first[joint]]
+    pieces.starts[count + 1] = at + 2
     return count + 1
 
 

@@ -27,10 +27,7 @@ from .corners import NO_HANDLE, find_joints
 from .font_curves import KEPT, Limits, cut_at, fit_contour, mixed
 from .font_curves import KINK as KINKED
 from .font_quadratics import fit_contour as fit_contour_quadratics
-from .settings import EFFORTS, Settings
-
-LONG_LINE = 0.02
-"""Share of the em from which straight lines stay lines."""
+from .settings import EFFORTS, LONG_LINE, Settings
 
 GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
 """As how many tries the finding of a check counts, in each round; beyond ``KEPT`` the contour stays as it is."""

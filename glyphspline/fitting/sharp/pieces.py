@@ -8,7 +8,6 @@ import numpy as np
 
 from ...compiled import compiled
 from ...types import FloatArray, IntArray
-from .corners import Joints
 
 
 class Pieces(NamedTuple):
@@ -44,19 +43,6 @@ def empty_pieces(masters: int, count: int, vertices: int) -> Pieces:
         np.zeros(count, dtype=np.int64), np.zeros(count + 1, dtype=np.int64), np.empty((vertices, masters, 2)),
         np.empty(vertices), np.zeros((count, masters, 2, 2)), np.empty(count),
     )  # fmt: skip
-
-
-@compiled
-def add_piece(pieces: Pieces, count: int, joints: Joints, i: int, j: int, spans: int, error: float) -> int:
-    """Add a line or an arc of one span between two joints after ``count`` other pieces; the number then."""
-    at = pieces.starts[count]
-    pieces.joints[count, 0], pieces.joints[count, 1] = i, j
-    pieces.spans[count], pieces.closed[count], pieces.errors[count] = spans, 0, error
-    for end, joint in ((0, i), (1, j)):
-        pieces.places[at + end] = joint
-        pieces.vertices[at + end] = joints.samples[:, joints.first[joint]]
-    pieces.starts[count + 1] = at + 2
-    return count + 1
 
 
 @compiled

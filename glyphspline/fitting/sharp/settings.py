@@ -5,6 +5,9 @@ from __future__ import annotations
 from functools import partial
 from typing import NamedTuple
 
+LONG_LINE = 0.02
+"""Share of the em from which straight lines stay lines."""
+
 
 class Settings(NamedTuple):
     """How contours are cut and fitted.

@@ -27,10 +27,7 @@ from ..results import ConvertedContours
 from .assembly import certify, put_together
 from .cutting import Chains, fit_contours, refit
 from .pieces import Pieces
-from .settings import EFFORTS
-
-LONG_LINE = 0.02
-"""Share of the em from which straight lines stay lines."""
+from .settings import EFFORTS, LONG_LINE
 
 SHARE = 0.97
 """Share of the tolerance that the fit may use. The rest is for what its samples miss; the certificate decides."""

@@ -52,14 +52,8 @@ On long stretches of fine detail very many miss it by little, and would get two 
 of 35,142 segments.
 """
 
-FEW = 3
-"""Insertions into a closed curve that may go round corners, before its vertices are fixed on the outline."""
-
 WARM_PASSES, WARM = 12, 0.02
 """Passes of variant 2 after a step, and the share of the tolerance below which its error is small enough."""
-
-DAMPING = 1e-2
-"""Damping of the first step, as a share of the mean of the diagonal."""
 
 
 @compiled
@@ -145,7 +139,8 @@ def grow(fit: Fit, begun: int, guess: int, wanted: int, may_fix: bool) -> bool:
             if error <= near:
                 keep(fit)
                 return True
-            if may_fix and (error > FAR * near or insertions >= FEW):
+            # Insertions into a closed curve that may go round corners, before its vertices are fixed on the outline.
+            if may_fix and (error > FAR * near or insertions >= 3):
                 return False
             slow = slow + 1 if error > 4 * near and error > 0.7 * last else 0
             last = error
@@ -227,7 +222,8 @@ def improve(fit: Fit, rounds: int, width: int) -> float:
         wobble += curve.h[s + 2]
     # Weight of the curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord.
     wobble = 1e-2 * (wobble / k) ** 3
-    damping, failures = DAMPING, 0
+    # Damping of the first step, as a share of the mean of the diagonal.
+    damping, failures = 1e-2, 0
     for n in range(rounds + 1):
         graded = error <= near
         for s in range(1 - curve.size[1], k if graded else 0):

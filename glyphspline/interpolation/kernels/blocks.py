@@ -274,9 +274,11 @@ def close_ranks(group: Group, P: FloatArray, Q: FloatArray, slots: int) -> int:
         if table[q, FINISHED]:
             continue
         lane, size = table[q, LANE], table[q, COUNT] + 2 * HALO
-        _move_lanes(group.blocks[:BLOCK], lane, to, size)
-        _move_lanes(P[: d * STRIDE], lane, to, size)
-        _move_lanes(Q[: d * STRIDE], lane, to, size)
+        for fields in (group.blocks[:BLOCK], P[: d * STRIDE], Q[: d * STRIDE]):
+            back = np.uint64(lane - to)
+            for field in range(0, fields.shape[0], STRIDE):
+                for j in range(np.uint64(field + to), np.uint64(field + to + size)):
+                    fields[j] = fields[j + back]
         for c in range(TOTAL):
             table[left, c] = table[q, c]
         for c in range(numbers.shape[1]):
@@ -290,12 +292,3 @@ def close_ranks(group: Group, P: FloatArray, Q: FloatArray, slots: int) -> int:
         for j in range(np.uint64(field + to), np.uint64(field + end)):
             group.blocks[j] = 0.0
     return left
-
-
-@compiled
-def _move_lanes(fields: FloatArray, lane: int, to: int, size: int) -> None:
-    """Copy ``size`` lanes of all fields to lanes before them."""
-    back = np.uint64(lane - to)
-    for field in range(0, fields.shape[0], STRIDE):
-        for j in range(np.uint64(field + to), np.uint64(field + to + size)):
-            fields[j] = fields[j + back]

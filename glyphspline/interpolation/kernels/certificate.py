@@ -24,9 +24,6 @@ SEARCHED = 9.0
 GIVEN_UP = 10.0
 """Mark of one whose search ended without a certificate."""
 
-BEYOND = 1 + 1e-9
-"""The other side is not searched if all of it is farther than the footpoint by this factor, in squared distances."""
-
 LOST = 5e-13
 """Share of the size of a piece by which another point may be nearer, as inner products have rounding errors."""
 
@@ -124,7 +121,9 @@ def flagged(B: FloatArray, P: FloatArray, Q: FloatArray, N: FloatArray, S: Float
                 for k in range(4):
                     for axis in range(d):
                         c[axis, k] = b[k, axis]
-            if not main_side and lower_bound(c, 3, low, high, work)[0] > BEYOND * D:
+            # The other side is not searched if all of it is farther than the footpoint by this factor, in squared
+            # distances.
+            if not main_side and lower_bound(c, 3, low, high, work)[0] > (1 + 1e-9) * D:
                 continue
             anything = True
             y, D_new, whole = search_piece(c, 3, 0.0, low, high, 0.0, sign * x, D, TIE_DISTANCE**2, work)

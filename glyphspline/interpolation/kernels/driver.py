@@ -34,9 +34,6 @@ from .gram_simd import seek_space
 from .lemma2 import fill_intervals
 from .newton_simd import seek
 
-SPARSE = 0.75
-"""Share of the lanes in use below which they are compacted. Copying all fields takes a quarter of a pass."""
-
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 """Status codes. A refused polygon is checked again in Python to build the error message."""
 
@@ -126,7 +123,8 @@ def _iterate(
             row[FINISHED], table[row[ORDER], TOTAL] = 1, row[PASSES]
             _store(given, found, group, at.P, q)
             left -= 1
-        if left < slots and lanes <= SPARSE * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
+        # Lanes are compacted where this share of them is in use: copying all fields takes a quarter of a pass.
+        if left < slots and lanes <= 0.75 * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
             slots = close_ranks(group, at.N, at.Q, slots)
     for q in range(every):
         count = table[q, TOTAL]

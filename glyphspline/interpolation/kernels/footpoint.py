@@ -264,10 +264,7 @@ def search_piece(
     if proven(work, d, m, high - y, allowed) and proven(work, d, m, low - y, allowed):
         return x, D, True
     shift(c, d, start, work)
-    probe, D_probe = (
-        start,
-        _product(work[SHIFTED:], 0, 0, m),
-    )  # not a local minimum: loses ties
+    probe, D_probe = start, _product(work[SHIFTED:], 0, 0, m)  # not a local minimum: loses ties
     left, right, bounds = work[LEFT], work[RIGHT], work[BOUNDS]
     left[0], right[0], bounds[0] = low, high, -np.inf
     count, parts, certified = 1, 0, True

@@ -29,8 +29,6 @@ TOP, R1, R2, R3, L1, L2, L3, PEAK, HIGHEST, LEVEL, RISING = (np.uint64(k * STRID
 PROBLEM_A, PROBLEM_B = np.uint64(11 * STRIDE), np.uint64(16 * STRIDE)
 B1, B2, B3, INSIDE, OUTSIDE = (np.uint64(k * STRIDE) for k in range(5))
 STEPS = 40
-CLOSE = 1e-9
-"""A Newton step below this share of the span is the last: the error left is its square."""
 
 
 @compiled
@@ -96,7 +94,7 @@ def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
         arrived = done > 0.0
         S[problem + INSIDE + j], S[problem + OUTSIDE + j] = inside, outside
         S[R1 + j] = select(arrived, y, new)
-        under_way = (moved > CLOSE) & (done == 0.0)
+        under_way = (moved > 1e-9) & (done == 0.0)  # the error left is the square of the last step
         S[R2 + j] = select(under_way, 0.0, 1.0)
         pending += select(under_way, 1, 0)
     return pending

@@ -39,7 +39,6 @@ from .blocks import (
 # Indices are unsigned: a signed one might be negative and count from the end, which keeps a loop from becoming SIMD.
 # Own fields of the scratch block: d and W, the same on both sides; E, V and Z on the main side; Z on the other.
 DX, DY, SWX, SWY, SEX, SEY, SVX, SVY, SZX, SZY, OZX, OZY = (np.uint64((OWN + k) * STRIDE) for k in range(12))
-SIXTH = 1 / 6
 
 GUARD = 1e-13
 """Share of |q'|² + |q''|² L²/4 + |q'''|² L⁴/36 that Q has to exceed, for rounding errors and the e_1 left at y*."""
@@ -94,7 +93,7 @@ def bernstein(c0: float, c1: float, c2: float, c3: float, c4: float, L: float) -
     squared = L * L
     k1, k2, k3, k4 = c1 * L, c2 * squared, c3 * (squared * L), c4 * (squared * squared)
     b1 = fma(0.25, k1, c0)
-    b2 = fma(SIXTH, k2, fma(0.5, k1, c0))
+    b2 = fma(1 / 6, k2, fma(0.5, k1, c0))
     b3 = fma(0.25, k3, fma(0.5, k2, fma(0.75, k1, c0)))
     return b1, b2, b3, c0 + k1 + k2 + k3 + k4
 
