@@ -14,7 +14,7 @@ from fontTools.pens.recordingPen import RecordingPen
 from fontTools.svgLib.path import parse_path
 
 import glyphspline as gs
-from glyphspline.fitting.sharp.sharp_fit import LONG_LINE
+from glyphspline.fitting.sharp.settings import LONG_LINE
 from glyphspline.outlines.joins import joins
 from glyphspline.types import FloatArray
 

@@ -41,9 +41,12 @@ class Chains(NamedTuple):
 
 
 @compiled
-def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArray]:
-    """The segments that have a length in some master; those that end where they begin are cut in two: an arc needs two
-    ends.
+def prepared(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple[FloatArray, IntArray, bool, Joints]:
+    """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
+
+    Segments that have a length in no master are left out; those that end where they begin are cut in two: an arc needs
+    two ends. It begins at a hard joint, or else at that farthest from the middle: the same whatever the contour's first
+    point. Direction and that joint are those of the first master.
     """
     masters, m = len(cubics), len(degrees)
     lasts = np.zeros(m, dtype=np.bool_)
@@ -64,18 +67,8 @@ def with_ends(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, IntArr
                 split(found[v, last], 0.5, found[v, count])
         kept[count] = kept[last] = degrees[j]
         count = last + 1
-    return found[:, :count].copy(), kept[:count]
-
-
-@compiled
-def prepared(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple[FloatArray, IntArray, bool, Joints]:
-    """A contour as it is fitted: its cubics, their degrees, whether they run the other way, and its joints.
-
-    It begins at a hard joint, or else at that farthest from the middle: the same whatever the contour's first point.
-    Direction and that joint are those of the first master.
-    """
-    chain, kept = with_ends(cubics, degrees)
-    m, flipped = len(kept), is_backward(chain[0])
+    chain, kept = found[:, :count].copy(), kept[:count]
+    m, flipped = count, is_backward(chain[0])
     if flipped:
         chain, kept = chain[:, ::-1, ::-1].copy(), kept[::-1].copy()
     joints = find_joints(chain, kept, settings)

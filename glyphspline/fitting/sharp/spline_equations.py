@@ -260,23 +260,6 @@ def middle_normal(b: FloatArray) -> tuple[float, float]:
 
 
 @compiled
-def choose_slots(fit: Fit, i: int, reach: int) -> int:
-    """Let the slots move that are up to ``reach`` on either side of vertex i; their number."""
-    k, closed, place = fit.curve.size[0], fit.curve.size[1], fit.place
-    slots, width, start = k + 1 - closed, 2 * reach, 0
-    if width >= slots:
-        width = slots
-    else:
-        start = i - reach if closed else min(max(i - reach, 0), slots - width)
-    place[: k + 3] = -1
-    for n in range(width):
-        place[(start + n) % slots + 1] = n
-    if closed:
-        place[0], place[k + 1], place[k + 2] = place[k], place[1], place[2]
-    return width
-
-
-@compiled
 def equations(fit: Fit, v: int, damping: float, width: int) -> None:
     """The equations in master v of one step of ``width`` slots: of the rows, of ratios, damping."""
     curve, A, g, first, place = fit.curve, fit.A, fit.step[v], fit.first, fit.place

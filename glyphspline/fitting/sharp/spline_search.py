@@ -36,7 +36,6 @@ from .spline_equations import (
     Fit,
     add_rows,
     agree_on_handles,
-    choose_slots,
     differentiate,
     empty_fit,
     equations,
@@ -164,7 +163,18 @@ def move(fit: Fit, rounds: int, i: int, reach: int) -> float:
     hold_tied(curve, fit.samples.directions, fit.samples.free)
     if not interpolate_cold(curve, settings.margin, settings.residual) < np.inf:
         return np.inf
-    return improve(fit, settings.few_rounds if curve.size[0] <= 3 else rounds, choose_slots(fit, i, reach))
+    k, closed, place = curve.size[0], curve.size[1], fit.place
+    slots, width, start = k + 1 - closed, 2 * reach, 0
+    if width >= slots:
+        width = slots
+    else:
+        start = i - reach if closed else min(max(i - reach, 0), slots - width)
+    place[: k + 3] = -1
+    for n in range(width):
+        place[(start + n) % slots + 1] = n
+    if closed:
+        place[0], place[k + 1], place[k + 2] = place[k], place[1], place[2]
+    return improve(fit, settings.few_rounds if k <= 3 else rounds, width)
 
 
 @compiled

@@ -12,11 +12,11 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet
-from ...curves.fairness import TURN, curvature_extrema, curvatures
+from ...curves.fairness import TURN, curvatures, extrema_of
 from ...curves.nearest import search_place
 from ...types import BoolArray, FloatArray, IntArray
 from ..measures import CORNER, extrema_floor
-from .canonical_contours import CanonicalContours, table_of
+from .canonical_contours import TABLE, CanonicalContours, table_of
 
 SAMPLES = 3
 """Samples of curvature and distance in a span."""
@@ -73,25 +73,20 @@ def bends(
     for i in range(len(which)):
         length = table_of(contours.lengths, contours.offsets, which[i])[-1]
         curve = pieces[offsets[i] : offsets[i + 1]]
-        extrema[i] = curvature_extrema(curve, length, CORNER)
         values, where, n = curvatures(curve, length, CORNER)
+        extrema[i] = extrema_of(values, n, TURN / length)
         for j in range(n):
             span = offsets[i] + min(int(where[j]), len(curve) - 1)
             peaks[span] = max(peaks[span], abs(values[j]))
     return extrema, peaks
 
 
-@compiled
 def first_limits(
     contours: CanonicalContours, which: IntArray, offsets: IntArray, peaks: FloatArray, near: float
 ) -> FloatArray:
     """Ragged limits of :func:`faired` to begin with, from the peaks of spans: what is straight stays."""
-    limits = np.empty(len(peaks))
-    for i in range(len(which)):
-        straight = STRAIGHT / table_of(contours.lengths, contours.offsets, which[i])[-1]
-        for j in range(offsets[i], offsets[i + 1]):
-            limits[j] = LIMIT * near if peaks[j] > straight else 0.0
-    return limits
+    straight = STRAIGHT / contours.lengths[contours.offsets[which + 1] * TABLE + which]
+    return np.where(peaks > np.repeat(straight, np.diff(offsets)), LIMIT * near, 0.0)
 
 
 @compiled

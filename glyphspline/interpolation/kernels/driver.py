@@ -150,8 +150,15 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
         P, Q, N = at.P[here:stop], at.Q[here:stop], at.N[here:stop]
         m = whole_vectors(lanes_used(group, slots, b))
         bad, wild = seek(block, P, Q, N, S, m) if d == 2 else seek_space(block, P, Q, N, S, d, m)
-        if wild > 0:
-            _pass_over(group, block, S, slots, b)
+        for q in range(slots if wild > 0 else 0):  # polygons with an error that is not finite are not searched
+            first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
+            for i in range(n):
+                if not np.inf > block[DD + np.uint64(first + i)]:
+                    numbers[q, LARGEST] = np.inf
+            if numbers[q, LARGEST] == np.inf:
+                for i in range(n):
+                    S[BAD + np.uint64(first + i)] = 0.0
+                group.table[q, UNCERTIFIED] += n
         searched = flagged(block, P, Q, N, S, d, m) if bad > 0 else 0
         for q in range(slots):
             first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
@@ -171,21 +178,6 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
             numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
-
-
-@compiled
-def _pass_over(group: Group, block: FloatArray, S: FloatArray, slots: int, b: int) -> None:
-    """Note which polygons have an error in block b that is not finite: they are not searched."""
-    table, numbers = group.table, group.numbers
-    for q in range(slots):
-        first, n = table[q, LANE] + HALO, min(LANES, table[q, COUNT] - b * LANES)
-        for i in range(n):
-            if not np.inf > block[DD + np.uint64(first + i)]:
-                numbers[q, LARGEST] = np.inf
-        if numbers[q, LARGEST] == np.inf:
-            for i in range(n):
-                S[BAD + np.uint64(first + i)] = 0.0
-            table[q, UNCERTIFIED] += n
 
 
 @compiled

@@ -72,40 +72,12 @@ def _prepare(h: FloatArray, S: FloatArray, first: np.uint64, count: int, margin:
 
 
 @compiled
-def _step(S: FloatArray, problem: np.uint64, m: int) -> int:
-    """One step for every crossing; returns the number of those that have not converged."""
-    wide_vectors()
-    pending = 0
-    for j in range(TWO, np.uint64(m) + TWO):
-        b0, b1, b2, b3 = S[TOP + j], S[problem + B1 + j], S[problem + B2 + j], S[problem + B3 + j]
-        inside, outside, y, done = S[problem + INSIDE + j], S[problem + OUTSIDE + j], S[R1 + j], S[R2 + j]
-        d0, d1 = b1 - b0, b2 - b1
-        c1, c2, c3 = 3.0 * d0, 3.0 * (d1 - d0), fma(-3.0, d1, b3 - b0)
-        excess = cubic(b0 - S[LEVEL + j], c1, c2, c3, y)
-        slope = fma(fma(3.0, c3 * y, 2.0 * c2), y, c1)
-        enough = excess >= 0.0
-        inside, outside = select(enough, y, inside), select(enough, outside, y)
-        step = excess / select(slope == 0.0, 1.0, slope)
-        new = y - step
-        low, high = select(inside < outside, inside, outside), select(inside < outside, outside, inside)
-        new = select((new >= low) & (new <= high) & (slope != 0.0), new, 0.5 * (low + high))
-        moved = new - y
-        moved = select(moved > 0.0, moved, -moved)
-        arrived = done > 0.0
-        S[problem + INSIDE + j], S[problem + OUTSIDE + j] = inside, outside
-        S[R1 + j] = select(arrived, y, new)
-        under_way = (moved > 1e-9) & (done == 0.0)  # the error left is the square of the last step
-        S[R2 + j] = select(under_way, 0.0, 1.0)
-        pending += select(under_way, 1, 0)
-    return pending
-
-
-@compiled
 def _crossings(S: FloatArray, problem: np.uint64, result: np.uint64, m: int) -> None:
     """Write where every basis function crosses its level to a field, from halfway by at most ``STEPS`` steps.
 
     R1: estimates. R2: whether converged, which those without a crossing are from the start.
     """
+    wide_vectors()
     for j in range(TWO, np.uint64(m) + TWO):
         inside, outside = S[problem + INSIDE + j], S[problem + OUTSIDE + j]
         last, level = S[problem + B3 + j], S[LEVEL + j]
@@ -113,7 +85,29 @@ def _crossings(S: FloatArray, problem: np.uint64, result: np.uint64, m: int) -> 
         S[R1 + j] = select(without, outside, 0.5 * (inside + outside))
         S[R2 + j] = select(without, 1.0, 0.0)
     for _ in range(STEPS):
-        if _step(S, problem, m) == 0:
+        pending = 0
+        for j in range(TWO, np.uint64(m) + TWO):
+            b0, b1, b2, b3 = S[TOP + j], S[problem + B1 + j], S[problem + B2 + j], S[problem + B3 + j]
+            inside, outside, y, done = S[problem + INSIDE + j], S[problem + OUTSIDE + j], S[R1 + j], S[R2 + j]
+            d0, d1 = b1 - b0, b2 - b1
+            c1, c2, c3 = 3.0 * d0, 3.0 * (d1 - d0), fma(-3.0, d1, b3 - b0)
+            excess = cubic(b0 - S[LEVEL + j], c1, c2, c3, y)
+            slope = fma(fma(3.0, c3 * y, 2.0 * c2), y, c1)
+            enough = excess >= 0.0
+            inside, outside = select(enough, y, inside), select(enough, outside, y)
+            step = excess / select(slope == 0.0, 1.0, slope)
+            new = y - step
+            low, high = select(inside < outside, inside, outside), select(inside < outside, outside, inside)
+            new = select((new >= low) & (new <= high) & (slope != 0.0), new, 0.5 * (low + high))
+            moved = new - y
+            moved = select(moved > 0.0, moved, -moved)
+            arrived = done > 0.0
+            S[problem + INSIDE + j], S[problem + OUTSIDE + j] = inside, outside
+            S[R1 + j] = select(arrived, y, new)
+            under_way = (moved > 1e-9) & (done == 0.0)  # the error left is the square of the last step
+            S[R2 + j] = select(under_way, 0.0, 1.0)
+            pending += select(under_way, 1, 0)
+        if pending == 0:
             break
     for j in range(TWO, np.uint64(m) + TWO):
         S[result + j] = S[R1 + j]
