@@ -216,6 +216,18 @@ def test_lines_are_left_along_them_where_the_grid_has_that_direction() -> None:
     assert far <= 1.0
 
 
+def test_a_line_ends_earlier_where_the_grid_has_no_control_point_along_it_near_its_end() -> None:
+    """A curve 12 units high that begins along a line of slope 169 / 152: near its end the grid has slope 1."""
+    points = [[266, 104], [121, 104], [117, 104], [113.32, 110.03], [116, 113], [268, 282]]
+    source = gs.Contour(np.array(points, dtype=np.float64), np.array([1, 3, 1, 1]))
+    (found,), far = quadratic_points(gs.Outline("four", contours=(source,)).arrays, OPTIONS, 1.0, 1000.0)
+    made = of_points(*found)
+    assert kinks(gs.Contour(made.points, made.degrees)) == []
+    assert far <= 1.0
+    a, b = (gs.sample(each, step=0.5) for each in (source, gs.Contour(made.points, made.degrees)))
+    assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
 def test_a_truetype_font_of_cubics_is_within_the_tolerance(tmp_path: Path) -> None:
     font = gs.open_font(FONTS / "kouzan-gyosho.otf")
     names = font.select(text="永g好")

@@ -24,7 +24,7 @@ from ..measures import distance_columns
 from ..options import Options
 from ..results import ConvertedContours, not_fitted
 from .corners import NO_HANDLE, find_joints
-from .font_curves import KEPT, Limits, cut_at, fit_contour, mixed
+from .font_curves import CORNER, KEPT, Limits, cut_at, fit_contour, mixed
 from .font_curves import KINK as KINKED
 from .font_quadratics import fit_contour as fit_contour_quadratics
 from .settings import EFFORTS, LONG_LINE, Settings
@@ -280,11 +280,95 @@ def quadratic_points(
         )  # fmt: skip
         points, on, far = fit_contour_quadratics(all_cubics(own), own.degrees, settings, tolerance, stored is not None)
         if stored is None:
+            first, turned = of_points(points, on), _turns_in(own)
+            for least in SLIDES if _turns_in(first) > turned else ():
+                cut = with_cut_lines(own, first, least)
+                if cut is None or _turns_in(of_points(points, on)) <= turned:
+                    break
+                other = fit_contour_quadratics(all_cubics(cut), cut.degrees, settings, tolerance, False)
+                if other[2] <= tolerance and _turns_in(of_points(*other[:2])) < _turns_in(of_points(points, on)):
+                    points, on, far = other
             stored, reached = (points, on), max(reached, far)
         elif 0 < len(points) < len(stored[0]) and not _more_findings(own, of_points(points, on), em):
             stored, reached = begun_as(points, on, stored), max(reached, far)
         found.append(stored)
     return found, reached
+
+
+SLIDES = (1, 3, 6, 10, 15, 21)
+"""From how many units from the end of a line on it is tried to let a curve begin there."""
+
+ALONG, BESIDE, REACH = np.radians(0.3), 0.4, 40
+"""Angle from a line at which the grid has a control point along it; how far from the line, in units, a new end of it
+may be; and how far from the old one, in units."""
+
+
+def _turns_in(contour: ContourArrays) -> int:
+    """The number of joints with curves that turn as a kink does."""
+    sizes = np.abs(turns(all_cubics(contour), NO_HANDLE))
+    line = contour.degrees == 1
+    return int(((sizes > KINKED) & (sizes < CORNER) & ~(line & np.roll(line, 1))).sum())
+
+
+def with_cut_lines(source: ContourArrays, made: ContourArrays, least: int) -> ContourArrays | None:
+    """A contour whose lines end earlier where those of what was made of it, in whole units, are left with a new kink.
+
+    The rest of a line belongs to the curve then, which has its first control point further away: near the end of a line
+    the grid may have none in its direction.
+
+    Args:
+        least: units from the old end. None if there is no such line.
+    """
+    cubics, sizes, made_sizes = all_cubics(source), turns(all_cubics(source), NO_HANDLE), {}
+    begins = all_cubics(made)[:, 0].tolist()
+    for point, size in zip(begins, np.abs(turns(all_cubics(made), NO_HANDLE)).tolist(), strict=True):
+        made_sizes[tuple(point)] = size
+    rows, degrees, m, changed = [], [], len(cubics), False
+    for s in range(m):
+        own, pieces = cubics[s], [(cubics[s], int(source.degrees[s]))]
+        for end in range(2) if source.degrees[s] == 1 else ():
+            j, beside = (s + end) % m, (s + 1) % m if end else s - 1
+            size = made_sizes.get(tuple(np.rint(cubics[j, 0]).tolist()), 0.0)
+            if source.degrees[beside] == 1 or not max(abs(sizes[j]) + 1e-3, KINKED) < size < CORNER:
+                continue
+            share = _share_of_line(np.rint(own[3 * (1 - end)]), own[3 * end], least)
+            if share is None:
+                continue
+            changed, at = True, share * own[3 * (1 - end)] + (1 - share) * own[3 * end]
+            line, _ = pieces.pop(-1 if end else 0)
+            first, last = straight(line[0], at), straight(at, line[3])
+            if end:
+                pieces += [(first, 1), (last, 3)]
+            else:
+                pieces = [(first, 3), (last, 1), *pieces]
+        rows += [cubic for cubic, _ in pieces]
+        degrees += [degree for _, degree in pieces]
+    if not changed:
+        return None
+    return chains(np.array(rows), np.array(degrees), np.array([0, len(rows)]))
+
+
+def straight(a: FloatArray, b: FloatArray) -> FloatArray:
+    """A line as a cubic (4, 2)."""
+    return a + np.arange(4.0)[:, None] / 3 * (b - a)
+
+
+def _share_of_line(far: FloatArray, end: FloatArray, least: int) -> float | None:
+    """By which share a line is to be shorter, so that the grid has a control point beyond its end, along it."""
+    vector = far - end
+    size = float(np.hypot(*vector))
+    for step in range(least, min(REACH, int(size / 2)) + 1):
+        node = np.rint(end + step / size * vector)
+        away = node - end
+        if abs(vector[0] * away[1] - vector[1] * away[0]) > BESIDE * size:
+            continue
+        x, y = np.meshgrid(*(node[k] - end[k] + np.arange(-12.0, 13.0) for k in range(2)))
+        x, y = -x, -y
+        u, v = node - far
+        along, across = (u * x + v * y) / size, np.abs(u * y - v * x) / size
+        if ((along > step) & (along < step + 12.0) & (across < ALONG * along)).any():
+            return float(away @ vector) / size**2
+    return None
 
 
 def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None:

@@ -117,9 +117,8 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
     align(run)
     n = 5 * nodes
     A, g, first = np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64)
-    if not run.closed:
-        for k in range(n):
-            first[k] = max(0, 5 * (k // 5 - 2))
+    for k in range(n if not run.closed else n - 10):  # the last two nodes of a closed run go with the first
+        first[k] = max(0, 5 * (k // 5 - 2))
     N = len(joints.places)
     x, weight, e, c = np.empty(N), np.ones(N), np.zeros(N), np.empty((3, 2))
     J, spread, own = np.zeros((4, 2, 10)), np.zeros((2, 2, 5)), np.empty((10, 11))

@@ -17,8 +17,8 @@ import numpy as np
 from ...compiled import compiled
 from ...types import FloatArray
 from .corners import Joints
-from .harmony import AXIS, FIXED, HELD, Run, end_jump
-from .nearness import add_samples, feet, squares
+from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump
+from .nearness import feet, sample_form, squares
 
 SWEEPS = 4
 """How often all nodes are visited; few move in the fourth."""
@@ -34,7 +34,7 @@ class Measure(NamedTuple):
     """What moving the points of a run costs in distance.
 
     Attributes:
-        exact: (r, 4, 2) where they were. own, rest: (r, 8, 9), (r,) of :func:`.nearness.add_samples`.
+        exact: (r, 4, 2) where they were. own, rest: (r, 8, 9), (r,) of :func:`.nearness.sample_form`.
     """
 
     exact: FloatArray
@@ -46,16 +46,14 @@ class Measure(NamedTuple):
 def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> None:
     """Round the cubics of a run, whose first node is joint i of the outline."""
     r, P = len(run.P), run.P
-    measure, J, c = Measure(P.copy(), np.zeros((r, 8, 9)), np.zeros(r)), np.zeros((4, 2, 8)), np.empty((3, 2))
-    for k in range(8):
-        J[k // 2, k % 2, k] = 1.0
+    measure, c = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r)), np.empty((3, 2))
     for s in range(r):
         if run.held[s]:
             continue
         a, b = joints.first[i + run.places[s]], joints.first[i + run.places[s + 1]]
         Q, x = joints.samples[0, a : b + 1], np.arange(b - a + 1.0) / (b - a)
         feet(P[s], Q, c, x, np.empty(b - a + 1))
-        measure.rest[s] = add_samples(P[s], c, Q, x, np.ones(b - a + 1), J, tolerance, measure.own[s])
+        measure.rest[s] = sample_form(P[s], c, Q, x, np.ones(b - a + 1), tolerance, measure.own[s])
         P[s] = np.rint(P[s])
     nodes = r if run.closed else r + 1
     room, best = np.empty((270, 3, 2)), np.empty((3, 2))
@@ -91,8 +89,8 @@ def turn_cost(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @compiled
-def joint_cost(run: Run, k: int, em: float) -> float:
-    """What the turn and the jump of curvature at a node cost."""
+def joint_cost(run: Run, k: int, em: float, least: float) -> float:
+    """What the turn and the jump of curvature at a node cost; at least ``least`` where it would be that much."""
     r, P = len(run.P), run.P
     if not run.closed and k in (0, r):
         if run.kind[k] == FIXED:
@@ -103,6 +101,8 @@ def joint_cost(run: Run, k: int, em: float) -> float:
         return turn_cost(run.T[k, 0], run.T[k, 1], x, y)
     p, q = P[k - 1], P[k % r]
     cost = turn_cost(p[3, 0] - p[2, 0], p[3, 1] - p[2, 1], q[1, 0] - q[0, 0], q[1, 1] - q[0, 1])
+    if cost >= least:
+        return cost
     jump = min(end_jump(p, q, em), 1.0)
     return cost + run.ease[k] * (0.25 * (jump / JUMP) ** 2 + (JUMP_PRICE if jump > JUMP else 0.0))
 
@@ -113,14 +113,14 @@ def cost_at(run: Run, k: int, before: int, after: int, measure: Measure, em: flo
 
     At least ``least`` where it would be that much.
     """
-    r, total = len(run.P), joint_cost(run, k, em)
+    r, total = len(run.P), joint_cost(run, k, em, least)
     for s in (before, after):
         if s >= 0 and total < least:
             total += squares(run.P[s], measure.exact[s], measure.own[s], measure.rest[s])
     if total < least and before >= 0 and (run.closed or k > 1):
-        total += joint_cost(run, (k - 1) % r, em)
+        total += joint_cost(run, (k - 1) % r, em, least - total)
     if total < least and after >= 0 and (run.closed or k + 1 < r):
-        total += joint_cost(run, (k + 1) % r if run.closed else k + 1, em)
+        total += joint_cost(run, (k + 1) % r if run.closed else k + 1, em, least - total)
     return total
 
 
@@ -155,7 +155,7 @@ def candidates(
     two, count = 1 - one, 0
     if kind == AXIS:
         for code in range(27):
-            found[count] = start
+            set_place(found, count, start)
             found[count, 1, one] += code % 3 - 1
             found[count, 0, one] += code // 3 % 3 - 1
             found[count, 2, one] += code // 9 - 1
@@ -166,7 +166,7 @@ def candidates(
             continue
         if kind == FIXED:
             for code in range(9):
-                found[count] = start
+                set_place(found, count, start)
                 found[count, row, 0] += code % 3 - 1
                 found[count, row, 1] += code // 3 - 1
                 count += 1
@@ -174,10 +174,10 @@ def candidates(
             # Along the tangent, on the grid's lines across it, and a step to either side.
             slope = tx / ty if one else ty / tx
             for code in range(15):
-                now = found[count]
-                now[:] = start
-                now[row, one] += code % 5 - 2
-                now[row, two] = np.rint(now[1, two] + slope * (now[row, one] - now[1, one])) + code // 5 - 1
+                set_place(found, count, start)
+                along = start[row, one] + code % 5 - 2
+                found[count, row, one] = along
+                found[count, row, two] = np.rint(start[1, two] + slope * (along - start[1, one])) + code // 5 - 1
                 count += 1
         else:
             # The node and one handle among their neighbours, the other handle on the line through both.
@@ -192,14 +192,23 @@ def candidates(
                 run_one, run_two = (y1 - y0, x1 - x0) if one else (x1 - x0, y1 - y0)
                 if run_one == 0.0:
                     continue
+                slope = run_two / run_one
+                here_one, here_two = (y1, x1) if one else (x1, y1)
                 for step in range(-1, 2):
-                    now = found[count]
-                    now[row, 0], now[row, 1], now[1, 0], now[1, 1] = x0, y0, x1, y1
-                    now[2 - row, one] = start[2 - row, one] + step
-                    along = now[2 - row, one] - now[1, one]
-                    now[2 - row, two] = np.rint(now[1, two] + run_two / run_one * along)
+                    at = start[2 - row, one] + step
+                    across = np.rint(here_two + slope * (at - here_one))
+                    found[count, row, 0], found[count, row, 1] = x0, y0
+                    found[count, 1, 0], found[count, 1, 1] = x1, y1
+                    found[count, 2 - row, one], found[count, 2 - row, two] = at, across
                     count += 1
     return count
+
+
+@compiled
+def set_place(found: FloatArray, code: int, place: FloatArray) -> None:
+    """Copy a node and its handles to those of a number."""
+    for k in range(3):
+        found[code, k, 0], found[code, k, 1] = place[k, 0], place[k, 1]
 
 
 @compiled
@@ -217,7 +226,12 @@ def improve(
         start[0, across] = start[2, across] = start[1, across]
         put_points(run, before, after, start, k)
     least, changed = cost_at(run, k, before, after, measure, em, np.inf), False
+    turns = run.kind[k] == FREE and before >= 0 and after >= 0
     for code in range(candidates(run.kind[k], run.T[k, 0], run.T[k, 1], start, before >= 0, after >= 0, room)):
+        if turns:
+            a, b, c = room[code]
+            if turn_cost(b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]) >= least:
+                continue
         put_points(run, before, after, room[code], k)
         cost = cost_at(run, k, before, after, measure, em, least)
         if cost < least - 1e-9:

@@ -38,22 +38,21 @@ def reweight(weight: FloatArray, e: FloatArray, worst: float) -> None:
 
 
 @compiled
-def add_samples(
-    p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, J: FloatArray, unit: float,
-    own: FloatArray,
+def sample_form(
+    p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, unit: float, form: FloatArray
 ) -> float:  # fmt: skip
-    """Add the normal equations of what brings a cubic nearer to samples, across it.
+    """The normal equations of what brings a cubic nearer to samples, across it, when its points move.
 
     Args:
-        p: (4, 2) the cubic. c, x: of :func:`feet`. Q: (n, 2), weight: (n,) samples.
-        J: (4, 2, u) how u unknowns move its points. unit: of length.
-        own: (u, u + 1) the lower half of the form, and its right-hand side.
+        p: (4, 2) the cubic. c, x: of :func:`feet`. Q: (n, 2), weight: (n,) samples. unit: of length.
+        form: (8, 9) receives the form in the points' coordinates, and its right-hand side.
 
     Returns:
         The mean squared distance as it is.
     """
-    n, u = len(Q), J.shape[2]
-    row, rest, scale = np.empty(u), 0.0, 1 / (max(n - 2, 1) * unit * unit)
+    n, rest, scale = len(Q), 0.0, 1 / (max(len(Q) - 2, 1) * unit * unit)
+    # Products of two Bernstein polynomials are seven powers, times the normal's two coordinates.
+    powers, right = np.zeros((7, 3)), np.zeros((4, 2))
     for k in range(1, n - 1):
         t = x[k]
         z = 1 - t
@@ -65,15 +64,57 @@ def add_samples(
         px = ((c[2, 0] * t + c[1, 0]) * t + c[0, 0]) * t + p[0, 0]
         py = ((c[2, 1] * t + c[1, 1]) * t + c[0, 1]) * t + p[0, 1]
         gap, w = nx * (Q[k, 0] - px) + ny * (Q[k, 1] - py), scale * weight[k]
-        B0, B1, B2, B3 = z * z * z, 3 * z * z * t, 3 * z * t * t, t * t * t
         rest += w * gap * gap
-        for i in range(u):
-            row[i] = nx * (B0 * J[0, 0, i] + B1 * J[1, 0, i] + B2 * J[2, 0, i] + B3 * J[3, 0, i]) + ny * (
-                B0 * J[0, 1, i] + B1 * J[1, 1, i] + B2 * J[2, 1, i] + B3 * J[3, 1, i]
-            )
-            own[i, u] += w * row[i] * gap
-            for j in range(i + 1):
-                own[i, j] += w * row[i] * row[j]
+        u, v = w * gap * nx, w * gap * ny
+        z2, t2 = z * z, t * t
+        B = (z2 * z, 3 * z2 * t, 3 * z * t2, t2 * t)
+        for i in range(4):
+            right[i, 0] += u * B[i]
+            right[i, 1] += v * B[i]
+        xx, xy, yy = w * nx * nx, w * nx * ny, w * ny * ny
+        z4, t4 = z2 * z2, t2 * t2
+        T = (z4 * z2, z4 * z * t, z4 * t2, z2 * z * t2 * t, z2 * t4, z * t4 * t, t4 * t2)
+        for i in range(7):
+            powers[i, 0] += xx * T[i]
+            powers[i, 1] += xy * T[i]
+            powers[i, 2] += yy * T[i]
+    for i in range(8):
+        one = i // 2
+        form[i, 8] = right[one, i % 2]
+        for j in range(8):
+            two = j // 2
+            share = (3.0 if 0 < one < 3 else 1.0) * (3.0 if 0 < two < 3 else 1.0)
+            form[i, j] = share * powers[one + two, i % 2 + j % 2]
+    return rest
+
+
+@compiled
+def add_samples(
+    p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, J: FloatArray, unit: float,
+    own: FloatArray,
+) -> float:  # fmt: skip
+    """Add :func:`sample_form` in other unknowns.
+
+    Args:
+        J: (4, 2, u) how u unknowns move the cubic's points, most of them few of these.
+        own: (u, u + 1) the lower half of the form, and its right-hand side.
+
+    Returns:
+        The mean squared distance as it is.
+    """
+    u, form, image = J.shape[2], np.empty((8, 9)), np.empty(9)
+    rest = sample_form(p, c, Q, x, weight, unit, form)
+    for i in range(u):
+        image[:] = 0.0
+        for k in range(8):
+            move = J[k // 2, k % 2, i]
+            if move != 0.0:
+                for m in range(9):
+                    image[m] += move * form[k, m]
+        own[i, u] += image[8]
+        for j in range(i + 1):
+            for k in range(8):
+                own[i, j] += J[k // 2, k % 2, j] * image[k]
     return rest
 
 
