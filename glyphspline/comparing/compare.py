@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ..checks.kinds import KINK, Thresholds
-from ..errors import is_positive, require
+from ..curves.pairing import ROUNDING
+from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
@@ -32,7 +33,7 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
             outlines are farther apart than that, kinks may be, up to 1/100 em.
 
     Raises:
-        OptionError: the tolerance is not positive.
+        OptionError: the tolerance is not positive. GlyphsplineError: coordinates are too large to be compared.
 
     Example:
         >>> import glyphspline as gs
@@ -75,6 +76,10 @@ def _changed(
     from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
     from .outline_distance import outline_distance
 
+    for outline, its in zip(old, moved, strict=True):
+        far = np.max([np.abs(contours.points).max(initial=0.0) for contours in (outline.arrays, its)])
+        if not far < outline.metrics.units_per_em * PER_EM / ROUNDING:
+            raise GlyphsplineError(f"coordinates up to {far:.3g} are too large to be compared", glyph=outline.name)
     every, other = joined([outline.arrays for outline in old]), joined(moved)
     firsts = offsets_of([len(outline.contours) for outline in old])
     others = offsets_of([len(outline.contours) for outline in new])

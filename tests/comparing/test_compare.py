@@ -210,6 +210,17 @@ def test_a_pair_does_not_depend_on_the_others(dragon: gs.Outline) -> None:
     assert together == [gs.compare(a, b) for a, b in pairs]
 
 
+@pytest.mark.parametrize("far", [1e12, 9e149, np.inf, np.nan])
+def test_coordinates_too_large_to_be_compared_are_refused(dragon: gs.Outline, far: float) -> None:
+    contour = dragon.contours[0]
+    points = contour.points.copy()
+    points[0, 0] = far
+    broken = replace(dragon, contours=[replace(contour, points=points)])
+    for pair in ((dragon, broken), (broken, dragon)):
+        with pytest.raises(gs.GlyphsplineError, match=r"coordinates up to .* are too large to be compared"):
+            gs.compare(*pair)
+
+
 def test_the_tolerance_is_positive(dragon: gs.Outline) -> None:
     with pytest.raises(gs.OptionError):
         gs.compare(dragon, dragon, tolerance=0)
