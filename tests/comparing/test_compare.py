@@ -210,7 +210,7 @@ def test_a_pair_does_not_depend_on_the_others(dragon: gs.Outline) -> None:
     assert together == [gs.compare(a, b) for a, b in pairs]
 
 
-@pytest.mark.parametrize("far", [1e12, 9e149, np.inf, np.nan])
+@pytest.mark.parametrize("far", [1e14, 9e149, np.inf, np.nan])
 def test_coordinates_too_large_to_be_compared_are_refused(dragon: gs.Outline, far: float) -> None:
     contour = dragon.contours[0]
     points = contour.points.copy()
