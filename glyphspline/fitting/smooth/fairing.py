@@ -13,7 +13,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import jet
 from ...curves.fairness import TURN, curvatures, extrema_of
-from ...curves.nearest import search_place
+from ...curves.nearest import near_place
 from ...types import BoolArray, FloatArray, IntArray
 from ..measures import CORNER, extrema_floor
 from .canonical_contours import TABLE, CanonicalContours, table_of
@@ -224,7 +224,7 @@ def _distance(
     if x > 0:
         point = np.empty((1, 1, 2))
         point[0, 0, 0], point[0, 0, 1] = px, py
-        place = search_place(1, outline, ends[j], ends[j + 1], point, 0, 0)
+        place = near_place(1, outline, (1 - x) * ends[j] + x * ends[j + 1], ends[j], ends[j + 1], point, 0)
     s = int(np.floor(place))
     qx, qy, _, _, _, _ = jet(outline, s % len(outline), place - s)
     ex, ey, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)

@@ -48,11 +48,10 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
         share, early = SMOOTH_TRIES[attempt]
-        search = _Search(
-            canonical_contours(contours), options, share * tolerance, options.hold_corners and attempt == 0
-        )
-        # One round also removes vertices that seem unnecessary.
-        search.refine(1 if early is None else early)
+        hold = options.hold_corners and attempt == 0
+        search = _Search(canonical_contours(contours), options, share * tolerance, hold)
+        # One round also removes vertices that seem unnecessary. Those beside held corners do not grow fewer by it.
+        search.refine(int(not hold) if early is None else early)
         if missed := [k for k, found in search.kept.items() if search.hold[k] and not search.passes(found)]:
             search.hold[missed] = False
             search.refine(1 if early is None else early, missed)
@@ -155,7 +154,7 @@ class _Search:
             fewer = every if turn < early else passed & (left > 0)
             left[which] -= passed[which]
             which, places, offsets = steps.changed(
-                contours, fields, done.trial, near, ~passed, fewer, self.angle, ratio, factor,
+                contours, fields, done.trial, near, ~passed, fewer, self.hold, self.angle, ratio, factor,
                 # Later rounds put vertices into the spans that fail, which ends sooner but is uneven.
                 POWERS[turn % len(POWERS)], turn < 6,
             )  # fmt: skip
@@ -177,7 +176,7 @@ class _Search:
         )  # fmt: skip
         for _ in range(trials):
             which, places, offsets = steps.thinned(
-                self.contours, self.near, self.angle, self.options.max_ratio, trial, good
+                self.contours, self.near, self.hold, self.angle, self.options.max_ratio, trial, good
             )
             if len(which) == 0:
                 break

@@ -46,8 +46,9 @@ BEND = 2.5
 FEWEST, MOST = 4, 2000
 """Vertices that a contour has at least, and up to which its polygon is refined."""
 
-BELOW, LEAST = 0.95, 0.4
-"""Of a failed span, the share tried of the length by which it would just pass, and the least share of its own."""
+BELOW, BELOW_HELD, LEAST = 0.95, 0.985, 0.4
+"""Of a failed span, and of one beside a held corner, the share tried of the length by which it would just pass, and the
+least share of its own."""
 
 SHORTEST = 1e-5
 """No span shorter than this share of the contour is divided: it would end in duplicate vertices."""
@@ -186,7 +187,7 @@ def spans_in(steps: FloatArray, places: FloatArray, corners: IntArray, k: int) -
 @compiled
 def lowered(
     field: FloatArray, lengths: FloatArray, places: FloatArray, corners: IntArray, again: BoolArray, errors: FloatArray,
-    near: float, growth: float,
+    near: float, growth: float, hold: bool,
 ) -> None:  # fmt: skip
     """Lower a field over the spans that fail, and over those beside them less and less.
 
@@ -194,6 +195,7 @@ def lowered(
         field: (m TABLE + 1,), which changes. places: (n,) of the vertices; ``corners``: those at corners.
         again: the stretches between corners in which spans fail. errors: (n,) of the span after each vertex.
         near: distance allowed. growth: logarithm of the factor by which chords grow at most.
+        hold: whether control points of the corners are held at them.
     """
     n, entries, before = len(places), len(field) - 1, field.copy()
     shares, steps = np.ones(n), steps_of(field, lengths)
@@ -205,7 +207,10 @@ def lowered(
                 if errors[i] > near:
                     # Between corners and jumps, the error grows with the fourth power of the length. Chords are
                     # shorter than the field by whole / spans, for their number to be whole.
-                    shares[i] = max(BELOW * (near / errors[i]) ** 0.25, LEAST) * min(whole / spans, 1.0)
+                    # Beside held corners it grows with the length: the curve is off at the corner.
+                    beside = hold and (j == 0 or j == spans - 1)
+                    share = BELOW_HELD * near / errors[i] if beside else BELOW * (near / errors[i]) ** 0.25
+                    shares[i] = max(share, LEAST) * min(whole / spans, 1.0)
     for i in range(n):
         start, stop = places[i] * TABLE, places[(i + 1) % n] * TABLE
         if i == n - 1:

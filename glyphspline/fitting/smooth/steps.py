@@ -157,14 +157,15 @@ def sharpened(
 @compiled
 def changed(
     contours: CanonicalContours, fields: FloatArray, trial: Trial, near: float, more: BoolArray, fewer: BoolArray,
-    corner_angle: float, ratio: float, factor: float, power: float, anew: bool,
+    hold: BoolArray, corner_angle: float, ratio: float, factor: float, power: float, anew: bool,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours of a trial that change, and their ragged places.
 
     Args:
         fields: of all contours, see :func:`first_places`; lowered where vertices are respaced.
         more: (K,) whether to have more vertices where a contour misses the tolerance. fewer: (K,) whether to remove
-            vertices that seem unnecessary. Both are indexed by contour.
+            vertices that seem unnecessary. hold: (K,) whether control points of corners are held at them. All three
+            are indexed by contour.
         ratio: at most, of adjacent chords. factor: by which they grow at most.
         power: the error of a span is assumed to grow with this power of its length.
         anew: whether more vertices are respaced, evenly, or inserted into the spans that miss the tolerance.
@@ -190,13 +191,14 @@ def changed(
                 for c in range(len(corners)):
                     for j in range(spans_after(corners, c, b - a) + 1 if fails[c] else 0):
                         needed[(corners[c] + j) % (b - a)] = True
-            keep = sparse(points[a:b], here, turns, corner_angle, needed, gaps[a:b], near, ratio, power)
+            keep = sparse(points[a:b], here, turns, corner_angle, hold[k], needed, gaps[a:b], near, ratio, power)
             here, bound, at = here[keep], bound[keep], at[keep]
         if more[k]:
             corners = at_corners(here, turns, corner_angle)
             if anew and len(corners) > 0:
                 field, fails = table_of(fields, contours.offsets, k), failed(corners, bound, near)
-                lowered(field, lengths, here, corners, fails, bound, near, growth)
+                held = hold[k] and turns[int(here[corners[0]])] >= corner_angle
+                lowered(field, lengths, here, corners, fails, bound, near, growth, held)
                 here = laid(field, lengths, here, corners, fails)
             else:
                 here = with_more(lengths, here, bound, at, near)
@@ -231,7 +233,13 @@ class Good(NamedTuple):
 
 @compiled
 def thinned(
-    contours: CanonicalContours, near: float, corner_angle: float, ratio: float, trial: Trial, good: Good
+    contours: CanonicalContours,
+    near: float,
+    hold: BoolArray,
+    corner_angle: float,
+    ratio: float,
+    trial: Trial,
+    good: Good,
 ) -> tuple[IntArray, FloatArray, IntArray]:
     """The contours that are not finished, and their next places, to find the vertices that are needed.
 
@@ -239,6 +247,7 @@ def thinned(
     trial fails, the vertices beside the failure are restored and kept from then on.
 
     Args:
+        hold: (K,) whether control points of corners are held at them.
         good: the polygons that passed, of all contours of the trial, in their order; they change.
     """
     those, new = np.empty(len(trial.which), dtype=np.int64), np.zeros(len(trial.which) + 1, dtype=np.int64)
@@ -264,7 +273,16 @@ def thinned(
             turns = contours.turns[contours.offsets[k] : contours.offsets[k + 1]]
             # Optimistic: the error grows with the length alone, as each trial is measured.
             keep[:] = sparse(
-                good.points[c:d], good.places[c:d], turns, corner_angle, needed, good.gaps[c:d], near, ratio, 1.0
+                good.points[c:d],
+                good.places[c:d],
+                turns,
+                corner_angle,
+                hold[k],
+                needed,
+                good.gaps[c:d],
+                near,
+                ratio,
+                1.0,
             )
         if not keep.all():
             here = good.places[c:d][keep]
@@ -276,30 +294,36 @@ def thinned(
 
 @compiled
 def sparse(
-    points: FloatArray, places: FloatArray, turns: FloatArray, corner_angle: float, needed: BoolArray,
+    points: FloatArray, places: FloatArray, turns: FloatArray, corner_angle: float, hold: bool, needed: BoolArray,
     errors: FloatArray, near: float, ratio: float, power: float,
 ) -> BoolArray:  # fmt: skip
     """Which vertices of a closed polygon to keep: not those without which the error would still be small enough.
 
     The error of a span is taken to grow with the given power of its length. Smallest errors first, no two neighbours
     at once, and none without which adjacent chords would be beyond ``ratio``. Without a vertex at a corner, the error
-    is at least its height over the chord that takes its place.
+    is at least its height over the chord that takes its place. At a held corner it grows with the chord beside it.
 
     Args:
         points: (n, 2), at places (n,). turns: at the joints; from ``corner_angle`` a joint is a corner.
+        hold: whether control points of corners are held at them.
         needed: (n,) vertices that are kept in any case. errors: (n,) of the span after each vertex.
     """
     n = len(points)
-    keep, expected = np.empty(n, dtype=np.bool_), np.empty(n)
+    keep, expected, corner = np.ones(n, dtype=np.bool_), np.full(n, np.inf), np.empty(n, dtype=np.bool_)
     for i in range(n):
-        keep[i], expected[i] = True, np.inf
+        j = int(places[i])
+        corner[i] = places[i] == j and turns[j] >= corner_angle
+    for i in range(n):
         if needed[i]:
             continue
         k = (i + 1) % n
         h, g = chord(points, i - 1, i), chord(points, i, k)
         expected[i] = max(errors[i - 1], errors[i]) * ((g + h) / max(g, h)) ** power
-        j = int(places[i])
-        if places[i] == j and turns[j] >= corner_angle:
+        if hold and corner[i - 1]:
+            expected[i] = max(expected[i], errors[i - 1] * (g + h) / h)
+        if hold and corner[k]:
+            expected[i] = max(expected[i], errors[i] * (g + h) / g)
+        if corner[i]:
             ax, ay = points[k, 0] - points[i - 1, 0], points[k, 1] - points[i - 1, 1]
             bx, by = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
             square = ax * ax + ay * ay
