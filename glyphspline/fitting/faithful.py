@@ -11,7 +11,7 @@ import numpy as np
 
 from ..curves.crossings import meetings
 from ..errors import GlyphsplineError
-from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.contour_arrays import ContourArrays, joined, lines_and_cubics, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, IntArray
 from .ladders import APART
@@ -193,12 +193,9 @@ def _touching(contours: ContourArrays, search: Search[Part]) -> BoolArray:
 
 def as_source(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:
     """Contours as they are: lines, and cubics in the place of curves. Nothing is interpolated."""
-    cubics, lines = all_cubics(contours), contours.degrees == 1
-    needed = np.ones((len(cubics), 3), dtype=np.bool_)
-    needed[lines, 1:] = False
-    degrees = np.where(lines, 1, 3)
+    points, degrees = lines_and_cubics(all_cubics(contours), contours.degrees == 1)
     starts = offsets_of(degrees)[contours.offsets]
-    found = not_fitted(contours, ContourArrays(cubics[:, :3][needed], degrees, contours.offsets, starts))
+    found = not_fitted(contours, ContourArrays(points, degrees, contours.offsets, starts))
     # A curve is within the largest distance of its Bézier points from those of another one.
     moved = np.hypot(*(found.curves.rounded(options.precision).points - found.curves.points).T)
     distances = np.maximum.reduceat(moved, starts[:-1]).tolist()

@@ -89,14 +89,14 @@ def _power_basis(degree: int) -> FloatArray:
     return np.array(rows[::-1])
 
 
-def _newton(axes: list[list[float]], t: float, steps: int = 12) -> float:
+def _newton(axes: list[list[float]], t: float) -> float:
     """Polish a zero of x x' + y y' + … that ``numpy.roots`` leaves a few digits short, until nothing improves.
 
     It evaluates the coordinates, as the product's coefficients lose half of the digits where the curve is near its
     vertex and slow. A start near a zero that is not polished would tie with it.
     """
     value, slope = _product(axes, t)
-    for _ in range(steps):
+    for _ in range(12):
         if slope == 0:
             break
         better = t - value / slope

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..curves.bezier import split
+from ..outlines.contour_arrays import lines_and_cubics
 from ..outlines.outline import Contour
 from ..types import FloatArray, IntArray
 from .alignment import cheapest_pairs, elastic_nodes
@@ -213,6 +214,4 @@ def cut(contour: Contour, places: FloatArray) -> Contour:
     segments = first.astype(np.int64)
     start, end = (places - first)[:, None, None], (ends - first)[:, None, None]
     pieces = split(split(cubics[segments % m], end)[0], start / end)[1]
-    lines = contour.degrees[segments % m] == 1
-    kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])
-    return Contour(pieces[kept], np.where(lines, 1, 3))
+    return Contour(*lines_and_cubics(pieces, contour.degrees[segments % m] == 1))

@@ -14,6 +14,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ..curves.integrals import area
 from ..errors import GlyphsplineError, OptionError
+from ..outlines.contour_arrays import lines_and_cubics
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, Outline
 from ..types import FloatArray, counted
@@ -164,8 +165,7 @@ def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contou
 def _together(parts: Sequence[Contour]) -> MasterContour:
     """One contour in all masters, with the same segments as lines."""
     lines = np.all([contour.degrees == 1 for contour in parts], axis=0)
-    kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])
-    return MasterContour(np.stack([contour.cubics()[kept] for contour in parts]), np.where(lines, 1, 3))
+    return MasterContour(*lines_and_cubics(np.stack([contour.cubics() for contour in parts]), lines))
 
 
 def _regions(locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis]) -> tuple[FloatArray, list[int]]:

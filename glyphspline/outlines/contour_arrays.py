@@ -71,6 +71,12 @@ def cubic_contours(cubics: FloatArray, offsets: IntArray) -> ContourArrays:
     return ContourArrays(cubics[:, :3].reshape(-1, 2), np.full(len(cubics), 3), offsets, 3 * offsets)
 
 
+def lines_and_cubics(cubics: FloatArray, lines: BoolArray) -> tuple[FloatArray, IntArray]:
+    """Points (..., N, 2) and degrees (m,) of a chain of cubics (..., m, 4, 2) of which some are lines."""
+    kept = np.where(lines[:, None], [True, False, False, False], [True, True, True, False])
+    return np.ascontiguousarray(cubics[..., kept, :]), np.where(lines, 1, 3)
+
+
 def end_to_end(contours: Sequence[tuple[FloatArray, IntArray]]) -> ContourArrays:
     """Contours from the points (..., N, 2) and degrees of each; ``points`` of several masters are end to end in all."""
     if not contours:

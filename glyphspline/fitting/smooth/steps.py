@@ -22,25 +22,17 @@ from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowere
 
 @compiled
 def first_places(
-    contours: CanonicalContours,
-    corner_angle: float,
-    ratio: float,
-    factor: float,
-    near: float,
-    variant: int,
+    contours: CanonicalContours, corner_angle: float, ratio: float, factor: float, near: float, variant: int,
     hold: BoolArray,
-) -> tuple[FloatArray, FloatArray, IntArray]:
+) -> tuple[FloatArray, FloatArray, IntArray]:  # fmt: skip
     """The fields of all contours end to end, and ragged places to begin with."""
     count = len(contours.offsets) - 1
     fields = np.empty(len(contours.cubics) * TABLE + count)
     offsets, values = np.zeros(count + 1, dtype=np.int64), np.empty(1024)
     for k in range(count):
         a, b = contours.offsets[k], contours.offsets[k + 1]
-        cubics, lengths, turns = (
-            contours.cubics[a:b],
-            table_of(contours.lengths, contours.offsets, k),
-            contours.turns[a:b],
-        )
+        cubics, turns = contours.cubics[a:b], contours.turns[a:b]
+        lengths = table_of(contours.lengths, contours.offsets, k)
         field, joints = table_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
         first_field(cubics, lengths, turns, corner_angle, factor, near, variant, hold[k], field)
         corners = at_corners(joints, turns, corner_angle)
@@ -177,11 +169,8 @@ def changed(
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
         s, t = contours.offsets[k], contours.offsets[k + 1]
-        cubics, lengths, turns = (
-            contours.cubics[s:t],
-            table_of(contours.lengths, contours.offsets, k),
-            contours.turns[s:t],
-        )
+        cubics, turns = contours.cubics[s:t], contours.turns[s:t]
+        lengths = table_of(contours.lengths, contours.offsets, k)
         here, bound, at = places[a:b].copy(), bounds[a:b].copy(), worst[a:b].copy()
         if fewer[k]:
             needed = np.zeros(b - a, dtype=np.bool_)
