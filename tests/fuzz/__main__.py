@@ -56,8 +56,8 @@ CALLS = {
 }
 """Commands; what is in capitals is replaced. Where they start workers, this process does the work."""
 
-MASTERS = {"variable.ttf": "ttf", "variable-cff2.otf": "otf", "space": "ufo"}
-"""Sources that have several, and a format for them."""
+MASTERS = {"variable.ttf": "ttf,otf,gallery", "variable-cff2.otf": "otf,ttf,gallery", "space": "ufo"}
+"""Sources that have several, and formats for them."""
 
 WRITTEN = {"out", "page.html", "text.svg"}
 FOUND = Path(__file__).with_name("found.json")

@@ -53,8 +53,8 @@ def to_other_outlines(
     Raises:
         GlyphsplineError: the font has no such glyph.
     """
-    every = dict.fromkeys(source.glyph_names)
-    masters: Mapping[str, Masters] = MadeOnDemand(every, lambda name: _masters(source, name))
+    every, said = dict.fromkeys(source.glyph_names), set[str]()
+    masters: Mapping[str, Masters] = MadeOnDemand(every, lambda name: _masters(source, name, said))
     as_is = MadeOnDemand(every, lambda name: oriented(unchanged(masters[name]), flavour))
     near = tolerance if flavour == "otf" else rest
     plain, kept = to_variable_font(blank(source, masters, flavour), as_is, flavour, tolerance=near, with_contours=False)
@@ -73,11 +73,14 @@ def to_other_outlines(
         left |= dict.fromkeys(far, "its quadratics in whole units would be beyond the tolerance")
 
 
-def _masters(source: Font, name: str) -> Masters:
+def _masters(source: Font, name: str, said: set[str]) -> Masters:
+    """A glyph, empty if it cannot be read, which is said once."""
     try:
         return source.masters(name)
     except GlyphsplineError as error:
-        log.warning("%s: left empty in the written font", error)
+        if name not in said:
+            log.warning("%s: left empty in the written font", error)
+        said.add(name)
         return Masters(name, axes=source.axes, regions=np.empty((0, len(source.axes), 3)), metrics=source.metrics)
 
 
@@ -112,6 +115,9 @@ def blank(source: Font, masters: Mapping[str, Masters], flavour: Flavour) -> Fon
     names = font.getGlyphOrder()
     given = dict(zip(names, source.glyph_names, strict=True))
     if "HVAR" not in font and "gvar" in font:
+        for stored, name in given.items():
+            if not len(masters[name].regions):  # nor is read what is beyond the limits of masters
+                font["gvar"].variations[stored] = []
         add_HVAR(font)  # advances vary in gvar, which goes
     for tag in (*HINTS, "gvar", "VARC", "VORG", "DSIG"):
         if tag in font:

@@ -212,6 +212,8 @@ class CharStrings2:
             tallied = tally((counts[0], counts[1]), turning, redrawn.fewest)
             contours, inner = tuple(plan.stored() for plan in plans), tuple(plan.inside() for plan in plans)
         contours = tuple(cubic(contour) for contour in contours)
+        if (points := sum(len(contour.points[0]) for contour in contours)) > LONGEST:  # of a byte each at least
+            raise GlyphsplineError(f"{points} points, more than fit into a char string", glyph=name)
         steps = [rounded_deltas(masters, contour.points, PARTS) for contour in contours]
         for each in steps:
             check_steps(each, PARTS, name)
