@@ -166,8 +166,7 @@ class Variations:
         top = self._tables["CFF2"].cff.topDictIndex[0]
         string = top.CharStrings[head.name]
         store = getattr(top.CharStrings, "varStore", None)
-        reader = SimpleT2Decompiler(getattr(string.private, "Subrs", []), string.globalSubrs, string.private)
-        reader.execute(string)
+        reader = executed(string)
         regions, changes = self._advance_changes(head)
         if store is None or reader.numRegions is None:  # it blends nothing
             stored = [region for region, change in zip(regions, changes.tolist(), strict=True) if change]
@@ -219,3 +218,10 @@ class _Parts:
     def layer(self, region: Region | None) -> FloatArray:
         """The points, or the deltas of a region."""
         return self.points if region is None else self.deltas.get(region, np.zeros_like(self.points))
+
+
+def executed(string: Any) -> SimpleT2Decompiler:
+    """What a char string of CFF2 does beyond drawing: the regions that it blends."""
+    reader = SimpleT2Decompiler(getattr(string.private, "Subrs", []), string.globalSubrs, string.private)
+    reader.execute(string)
+    return reader

@@ -19,7 +19,7 @@ import numpy as np
 from fontTools.cffLib import maxStackLimit
 from fontTools.cffLib.specializer import commandsToProgram, generalizeCommands, programToCommands, specializeCommands
 from fontTools.cffLib.transforms import desubroutinizeCharString
-from fontTools.misc.psCharStrings import SimpleT2Decompiler, T2CharString
+from fontTools.misc.psCharStrings import T2CharString
 from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates, flagOnCurve
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
 from fontTools.ttLib.tables.TupleVariation import TupleVariation
@@ -29,10 +29,12 @@ from ...errors import GlyphsplineError, OutputError
 from ...files import write_whole
 from ...outlines.masters import MasterContour, Masters, quadratics
 from ...readers import Font
+from ...readers.opentype.variations import executed
 from ...types import BoolArray, FloatArray, IntArray
+from ..font.font_glyphs import put_string
 from ..font.master_deltas import region_key, rounded_deltas
 from ..font.quadratic_contours import PHANTOMS
-from ..font.variable_font import CharStrings2
+from ..font.variable_font import CharStrings2, blend
 from ..font.variable_glyf import Gvar, placed_by_points, put_glyphs
 
 NEAR = 2e-3
@@ -101,9 +103,7 @@ class FontEdit:
         is_glyf = "glyf" in font
         follows = put_glyphs(font, self._new) if is_glyf else False
         if is_glyf and self._gvar is not None:
-            raw = DefaultTable("gvar")
-            raw.data = self._gvar.compiled()
-            font["gvar"] = raw
+            self._gvar.store(font)
         if getattr(font.get("DSIG"), "signatureRecords", None):
             del font["DSIG"]  # a signature of the bytes as they were
         for tag in font.reader.keys() if font.reader else ():
@@ -224,10 +224,7 @@ class FontEdit:
             )
             made = T2CharString(program=program, private=old.private, globalSubrs=old.globalSubrs)
             made.compile(isCFF2=table == "CFF2")
-            if strings.charStringsAreIndexed:
-                strings.charStringsIndex[strings.charStrings[name]] = made
-            else:
-                strings[name] = made
+            put_string(strings, name, made)
 
         return Stored(owns, why, lambda new: new, put)
 
@@ -236,8 +233,7 @@ class FontEdit:
         private = old.private
         copy = T2CharString(bytecode=old.bytecode, program=old.program, private=private, globalSubrs=old.globalSubrs)
         desubroutinizeCharString(copy)
-        reader = SimpleT2Decompiler(getattr(private, "Subrs", []), old.globalSubrs, private)
-        reader.execute(copy)
+        reader = executed(copy)
         order: list[int] | None = []
         regions: list[FloatArray] = []
         if getattr(reader, "numRegions", None):
@@ -380,14 +376,8 @@ def with_points(commands: list[tuple[str, list[Any]]], contours: Sequence[tuple[
     for places, points in contours:
         for (number, k), point in zip(places, points, strict=True):
             step = point - (np.zeros_like(point) if at is None else at)
-            commands[number][1][k : k + 2] = [_argument(step[:, axis].tolist()) for axis in (0, 1)]
+            commands[number][1][k : k + 2] = [blend(step[:, axis].tolist()) for axis in (0, 1)]
             at = point
-
-
-def _argument(column: list[float]) -> Any:
-    """A number, or a list of a default, deltas and 1, which stands for a blend; in parts that the format has."""
-    values = [round(value) if abs(value - round(value)) < 1e-5 else round(value * 65536) / 65536 for value in column]
-    return [*values, 1] if any(values[1:]) else values[0]
 
 
 def write_points(

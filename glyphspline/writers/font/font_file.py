@@ -36,6 +36,7 @@ from .font_glyphs import (
     drawn_result,
     drop_endless,
     parts_of,
+    put_string,
     quadratic_result,
     stays,
     users,
@@ -171,10 +172,7 @@ class _InPlace:
         else:
             old = self.strings[name]
             drawn.data.private, drawn.data.globalSubrs = old.private, old.globalSubrs
-            if self.strings.charStringsAreIndexed:
-                self.strings.charStringsIndex[self.strings.charStrings[name]] = drawn.data
-            else:
-                self.strings[name] = drawn.data
+            put_string(self.strings, name, drawn.data)
         set_bearings(self.font, name, drawn, result.outline)
         return drawn
 

@@ -294,6 +294,14 @@ def drop_endless(font: TTFont) -> None:
             glyf[name] = Glyph()
 
 
+def put_string(strings: Any, name: str, new: Any) -> None:
+    """Put a char string into the place of another."""
+    if strings.charStringsAreIndexed:
+        strings.charStringsIndex[strings.charStrings[name]] = new
+    else:
+        strings[name] = new
+
+
 def parts_of(font: TTFont, name: str) -> list[str]:
     """The simple glyphs that a glyph of ``glyf`` is made of, in order, each once; itself if it is simple."""
     found: dict[str, None] = {}

@@ -16,16 +16,17 @@ from typing import Any
 import numpy as np
 from fontTools.cffLib import maxStackLimit
 from fontTools.cffLib.specializer import commandsToProgram, specializeCommands
-from fontTools.misc.psCharStrings import SimpleT2Decompiler, T2CharString
+from fontTools.misc.psCharStrings import T2CharString
 from fontTools.ttLib import TTFont
 
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import MasterContour
 from ...readers import Font
+from ...readers.opentype.variations import executed
 from ...readers.source import reusing
 from ...types import FloatArray, IntArray
 from .font_file import replace_family
-from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of
+from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string
 from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, region_key, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variable_glyf import Quadratics
@@ -231,10 +232,7 @@ class CharStrings2:
             raise GlyphsplineError(
                 f"its char string would have {len(new.bytecode)} bytes, more than {LONGEST}", glyph=name
             )
-        if self._strings.charStringsAreIndexed:
-            self._strings.charStringsIndex[self._strings.charStrings[name]] = new
-        else:
-            self._strings[name] = new
+        put_string(self._strings, name, new)
         drawn = [as_drawn(masters, each, PARTS) for each in steps]
         stored = tuple(MasterContour(points, c.degrees) for points, c in zip(drawn, contours, strict=True))
         # Convex, and multilinear between the corners of the grid: largest at one of them, and at a control point.
@@ -248,10 +246,7 @@ class CharStrings2:
 
     def _place(self, regions: FloatArray, old: Any) -> tuple[int, list[int]]:
         """The index of the item of the store that has just these regions, and their indices in its order."""
-        private = old.private
-        copy = T2CharString(bytecode=old.bytecode, private=private, globalSubrs=old.globalSubrs)
-        reader = SimpleT2Decompiler(getattr(private, "Subrs", []), old.globalSubrs, private)
-        reader.execute(copy)
+        reader = executed(T2CharString(bytecode=old.bytecode, private=old.private, globalSubrs=old.globalSubrs))
         known = {region_key(region): k for k, region in enumerate(regions)}
         for index in (reader.vsIndex, *range(len(self.regions))):
             if index < len(self.regions):
@@ -283,7 +278,7 @@ def drawing(steps: list[IntArray], contours: Sequence[MasterContour], name: str)
         moves = np.diff(path, axis=1)
         if moves.size and np.abs(moves).max() > LIMIT * PARTS:
             raise GlyphsplineError(f"steps beyond {LIMIT} do not fit into a font", glyph=name)
-        blended = [[_argument(column) for column in point] for point in moves.transpose(1, 2, 0).tolist()]
+        blended = [[blend(column) for column in point] for point in (moves.transpose(1, 2, 0) / PARTS).tolist()]
         commands.append(("rmoveto", blended[0]))
         offset = 1
         last = len(contour) - 1
@@ -297,7 +292,7 @@ def drawing(steps: list[IntArray], contours: Sequence[MasterContour], name: str)
     return commands
 
 
-def _argument(column: list[int]) -> Any:
-    """A number, or a list of the default, the deltas and 1, which the specialiser takes for a blend."""
-    values = [step // PARTS if step % PARTS == 0 else step / PARTS for step in column]
-    return [*values, 1] if any(column[1:]) else values[0]
+def blend(column: list[float]) -> Any:
+    """A number, or a list of a default, deltas and 1, which the specialiser takes for a blend; in parts of a unit."""
+    values = [round(value) if abs(value - round(value)) < 1e-5 else round(value * PARTS) / PARTS for value in column]
+    return [*values, 1] if any(values[1:]) else values[0]

@@ -114,9 +114,7 @@ class Quadratics:
     def finish(self) -> None:
         """Put the new glyphs into the font: bounds, side bearings, offsets and maxima follow."""
         put_glyphs(self._font, self._new)
-        raw = DefaultTable("gvar")
-        raw.data = self._gvar.compiled()
-        self._font["gvar"] = raw
+        self._gvar.store(self._font)
 
 
 def put_glyphs(font: TTFont, new: Mapping[str, Glyph]) -> bool:
@@ -209,8 +207,8 @@ class Gvar:
         record = struct.pack(">HH", count, 4 + len(tuples)) + tuples + data if count else b""
         self.records[gid] = record + b"\0" * (len(record) % 2)
 
-    def compiled(self) -> bytes:
-        """The whole table."""
+    def store(self, font: TTFont) -> None:
+        """Put the whole table into a font."""
         ends = np.cumsum([0, *map(len, self.records)])
         short = ends[-1] <= 2 * 0xFFFF and not (ends % 2).any()
         offsets = (ends // 2).astype(">u2") if short else ends.astype(">u4")
@@ -219,4 +217,5 @@ class Gvar:
         head = struct.pack(
             ">HHIHHI", len(self._axes), len(self._shared), at, len(self.records), not short, at + len(shared)
         )
-        return b"".join([self._data[:4], head, offsets.tobytes(), shared, *self.records])
+        raw = font["gvar"] = DefaultTable("gvar")
+        raw.data = b"".join([self._data[:4], head, offsets.tobytes(), shared, *self.records])
