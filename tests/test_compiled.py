@@ -151,7 +151,7 @@ def test_a_batch_of_open_arcs_is_those_one_by_one() -> None:
 def test_one_vertex_alone_is_algorithm_1_by_the_roots_of_polynomials(whole_curve: bool) -> None:
     for number in range(20):
         kind, p = polygon(number)
-        k, tolerance, problem = number % 3, 2e-7 * np.ptp(p, axis=0).max(), prepare(p, 1)
+        k, tolerance, problem = number % 3, 2e-7 * np.ptp(p, axis=0).max(), prepare(p, Method(1))
         centre, half = problem.centres[k], np.array([-0.5, 0.5]) * problem.knots[-1]
         interval = centre + half if whole_curve else problem.intervals.bounds[k]
         controls, errors = problem.points.copy(), [np.inf]

@@ -153,21 +153,13 @@ class Problem:
 
 
 def prepare(
-    points: ArrayLike,
-    variant: int = 2,
-    *,
-    degree: int = 3,
-    margin: float = 0.0,
-    knots: Parametrisation | ArrayLike = "chord",
-    fallback: Fallback = "knot",
-    closed: bool = True,
-    end_tangents: Tangents | None = None,
+    points: ArrayLike, method: Method, knots: ArrayLike | None = None, end_tangents: Tangents | None = None
 ) -> Problem:
-    """Check the input and lay out knots, intervals and free control points."""
+    """Check the input and lay out knots, intervals and free control points; ``knots`` if the method has no rule."""
+    degree, closed = method.degree, method.closed
     p, merged = clean_polygon(points, closed)
-    if len(merged) and not isinstance(knots, str):
-        knots = np.delete(np.asarray(knots, dtype=np.float64), merged)
-    s = vertex_parameters(p, knots, closed)
+    rule: Any = method.knots
+    s = vertex_parameters(p, rule or np.delete(np.asarray(knots, dtype=np.float64), merged), closed)
     if closed:
         u, centres, vertices = closed_knots(s, degree), vertex_centres(s, degree), np.arange(len(p))
         first = vertices - (degree + 1) // 2
@@ -183,7 +175,7 @@ def prepare(
             spread[[1, -2], [0, -1]] = natural
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
     intervals = (search_intervals if closed else partial(_arc_intervals, u, spread))(
-        windows, centres[vertices], variant, margin, fallback
+        windows, centres[vertices], method.variant, method.margin, method.fallback
     )
     return Problem(p, vertices, u, degree, closed, centres, intervals, spread, fixed, merged)
 
@@ -271,10 +263,7 @@ def interpolate_reference(
     """
     rule: Any = knots if isinstance(knots, str) else None
     method = Method(variant, knots=rule, **options)
-    problem = prepare(
-        points, variant, degree=method.degree, margin=method.margin, knots=knots, fallback=method.fallback,
-        closed=method.closed, end_tangents=end_tangents,
-    )  # fmt: skip
+    problem = prepare(points, method, None if rule else knots, end_tangents)
     tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
     chords = np.diff(problem.centres) if len(problem.centres) > 1 else np.ones(1)
     settled = SETTLED * float(chords.mean()) if method.finish == "solve" else 0.0

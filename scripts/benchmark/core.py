@@ -107,7 +107,7 @@ def against_kurbo() -> list[Row]:
     from kurbopy import CubicBez, Point
 
     p = random_polygon(90)
-    problem = prepare(p)
+    problem = prepare(p, Method())
     spline = problem.spline(p)
     pieces = [CubicBez(*(Point(*map(float, point)) for point in piece)) for piece in spline.to_bezier()]
     targets = [Point(*map(float, point)) for point in p]

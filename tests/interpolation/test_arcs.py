@@ -10,6 +10,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.interpolation.intervals import END_MARGIN, basis_function
+from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.reference import interpolate_reference, prepare
 from glyphspline.types import FloatArray
 from tests.polygons import random_polygon
@@ -79,7 +80,7 @@ def test_rows_of_free_control_points_add_up_to_at_most_1_minus_2c_on_the_interva
 ) -> None:
     for seed in range(5):
         p = random_polygon(n, seed)
-        problem = prepare(p, 2, margin=margin, closed=False, end_tangents=tangents(kind, seed))
+        problem = prepare(p, Method(2, margin=margin, closed=False), end_tangents=tangents(kind, seed))
         low, high = problem.intervals.bounds.T
         sums = []
         for share in np.linspace(0, 1, 41):
@@ -130,7 +131,7 @@ def test_the_bound_is_that_of_the_rows_with_fixed_knots_too() -> None:
     """Variant 3: the rate bound is the norm of I - B at the knots, or above it away from the ends."""
     for seed, kind in enumerate(ENDS * 3):
         p = random_polygon(3 + seed, seed)
-        problem = prepare(p, 3, closed=False, end_tangents=tangents(kind, seed))
+        problem = prepare(p, Method(3, closed=False), end_tangents=tangents(kind, seed))
         B = problem.matrix(problem.centres[problem.vertices])
         norm = np.abs(np.eye(len(B)) - B).sum(axis=1).max()
         assert problem.intervals.rate_bound == pytest.approx(norm, abs=1e-12)

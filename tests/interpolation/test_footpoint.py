@@ -104,7 +104,7 @@ def test_a_tie_goes_to_the_centre() -> None:
 def test_planted_footpoints_come_back() -> None:
     """Step off along the normal by less than the radius of curvature."""
     rng = np.random.default_rng(6)
-    spline = Spline(smooth(rng, 24), prepare(smooth(rng, 24)).knots)
+    spline = Spline(smooth(rng, 24), prepare(smooth(rng, 24), Method()).knots)
     t = spline.period * rng.random(200)
     tangent = spline(t, derivative=1)
     normal = tangent[:, ::-1] * [-1, 1] / np.hypot(*tangent.T)[:, None]
@@ -128,7 +128,7 @@ def test_one_pass_finds_what_the_reference_finds(variant: int) -> None:
     for n in (5, 12, 60):
         p = uniform(rng, n)
         result = interpolate_batch(p, np.array([0, n]), Method(variant, max_iterations=0))
-        problem = prepare(p, variant)
+        problem = prepare(p, Method(variant))
         spline = problem.spline(p)
         for i in range(n):
             low, high = problem.intervals.bounds[i]
