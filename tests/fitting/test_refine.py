@@ -16,7 +16,7 @@ from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.smooth import fairing, steps
 from glyphspline.fitting.smooth.canonical_contours import CanonicalContours, canonical_contours
 from glyphspline.fitting.smooth.smooth_fit import smooth_fits
-from glyphspline.fitting.smooth.spacing import growth_of
+from glyphspline.fitting.smooth.spacing import growth_of, off_corners
 from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
@@ -270,3 +270,19 @@ def test_no_held_corner_where_it_does_not_serve() -> None:
 
 def _outline(contour: gs.Contour) -> gs.Outline:
     return gs.Outline("A", 1, (65,), 600.0, [contour], gs.FontMetrics(1000.0, 800.0, -200.0))
+
+
+def test_how_far_off_the_curve_is_at_held_corners_is_known_from_the_chords() -> None:
+    (contour,) = gs.convert(
+        gs.Outline("square", contours=(square_contour(500),)), gs.Options(tolerance=1.0, corners="smooth")
+    ).contours
+    square = contour.source.points
+    points = contour.polygon.copy()
+    gaps = np.hypot(*(points[:, None] - square).T).T
+    corners = np.sort(gaps.argmin(axis=0))
+    off = gaps.min(axis=1)[corners]
+    points[corners] = square[gaps.argmin(axis=1)[corners]]  # the polygon has the curve's own points there
+    errors = off_corners(points, corners, np.full(4, np.pi / 2))
+    assert off.min() > 0.5
+    np.testing.assert_allclose(errors[corners], off, rtol=0.25)
+    assert not errors[corners - 2].any()

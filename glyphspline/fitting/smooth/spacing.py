@@ -37,6 +37,9 @@ AT_HELD = 0.167
 """Chords growing by 4 away from a corner whose control point is held: the curve is off by this times the chord beside
 the corner and the sine of half its angle, at the corner alone."""
 
+NEAR_HELD = 0.78
+"""Distance of the control points beside a held corner from it, in chords, for the error at the corner."""
+
 AT_CORNER_3, GROWTH_3 = 0.1, 2.5
 """The same for variant 3."""
 
@@ -182,6 +185,27 @@ def spans_in(steps: FloatArray, places: FloatArray, corners: IntArray, k: int) -
     for i in range(a * TABLE, stop if b > a else stop + n):
         total += steps[i % n]
     return total
+
+
+@compiled
+def off_corners(points: FloatArray, corners: IntArray, turns: FloatArray) -> FloatArray:
+    """(n,) about how far off the curve will be in the spans beside corners whose control points are held at them.
+
+    Args:
+        points: (n, 2) vertices. corners: (k,) those at corners; turns: (k,) there, in radians.
+    """
+    n = len(points)
+    chords, _ = chords_of(points, 1.0)
+    errors = np.zeros(n)
+    for k in range(len(corners)):
+        i = corners[k]
+        c, d, e, f = chords[i - 2], chords[i - 1], chords[i], chords[(i + 1) % n]
+        # How far the two control points beside the corner draw the curve, which are about a chord away from it.
+        a, b = NEAR_HELD * e * e * d / ((d + e) * (c + d + e)), NEAR_HELD * d * d * e / ((d + e) * (d + e + f))
+        errors[i - 1] = errors[i] = max(
+            np.sqrt(a * a + b * b - 2 * a * b * np.cos(turns[k])), max(errors[i - 1], errors[i])
+        )
+    return errors
 
 
 @compiled

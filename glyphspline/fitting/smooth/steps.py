@@ -17,7 +17,7 @@ from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
 from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import TABLE, CanonicalContours, points_at, table_of
-from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, spans_after, with_more
+from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, off_corners, spans_after, with_more
 
 
 @compiled
@@ -37,6 +37,12 @@ def first_places(
         first_field(cubics, lengths, turns, corner_angle, factor, near, variant, hold[k], field)
         corners = at_corners(joints, turns, corner_angle)
         even = laid(field, lengths, joints, corners, np.ones(len(corners), dtype=np.bool_))
+        if hold[k] and turns[corners[0]] >= corner_angle:
+            corners = at_corners(even, turns, corner_angle)
+            errors = off_corners(points_at(cubics, even), corners, turns[even[corners].astype(np.int64)])
+            fails = failed(corners, errors, near)
+            lowered(field, lengths, even, corners, fails, errors, near, np.log(factor), True)
+            even = laid(field, lengths, even, corners, fails)
         part = graded(cubics, lengths, even, ratio)
         values = appended(values, offsets[k], part)
         offsets[k + 1] = offsets[k] + len(part)
