@@ -271,6 +271,11 @@ def test_glyphs_drawn_anew_have_outlines_of_the_other_kind_within_the_tolerance(
     for a, b in zip(old.contours, font.outline("o").contours, strict=True):
         points = [dense([*c.cubics()], 200) for c in (a, b)]
         assert 1e-3 < apart(points[1], points[0]) < 1.0
+    data = TTF.read_bytes()
+    at = TTFont(TTF).reader.tables["gvar"].offset + 12  # the number of glyphs
+    broken = Font(source.path, data[:at] + b"\0\1" + data[at + 2 :], 0, None)
+    with pytest.raises(GlyphsplineError, match="a broken font"):
+        to_other_outlines(broken, {}, "otf", tolerance=1.0, rest=0.5)
     _, tight = to_other_outlines(
         open_font(OTF), {"n": as_it_is(open_font(OTF).masters("n"))}, "ttf", tolerance=0.05, rest=0.05
     )

@@ -25,6 +25,7 @@ from ...curves.integrals import area
 from ...errors import GlyphsplineError
 from ...outlines.masters import Masters
 from ...readers import Font
+from ...readers.source import reusing
 from ...types import MadeOnDemand
 from .font_file import HINTS, become
 from .font_glyphs import Flavour
@@ -51,13 +52,15 @@ def to_other_outlines(
         rest: how far quadratics may be from the cubics they are made of.
 
     Raises:
-        GlyphsplineError: the font has no such glyph.
+        GlyphsplineError: the font has no such glyph, or is broken.
     """
     every, said = dict.fromkeys(source.glyph_names), set[str]()
     masters: Mapping[str, Masters] = MadeOnDemand(every, lambda name: _masters(source, name, said))
     as_is = MadeOnDemand(every, lambda name: oriented(unchanged(masters[name]), flavour))
     near = tolerance if flavour == "otf" else rest
-    plain, kept = to_variable_font(blank(source, masters, flavour), as_is, flavour, tolerance=near, with_contours=False)
+    with reusing(source.path, source.kind):
+        empty = blank(source, masters, flavour)
+    plain, kept = to_variable_font(empty, as_is, flavour, tolerance=near, with_contours=False)
     for name, reason in kept.left.items():
         log.warning("%s, glyph %r: %s: left empty in the written font", source.path, name, reason)
     written, left = Font(source.path, plain, 0, None), dict[str, str]()
