@@ -44,7 +44,10 @@ class Row:
         """In a word, whether the figure is what it has to be."""
         if self.must is None:
             return ""
-        passes = [limit is not None and (self.value >= limit) == self.more for limit in (self.aim, self.must)]
+        passes = [
+            limit is not None and (self.value == limit or (self.value > limit) == self.more)
+            for limit in (self.aim, self.must)
+        ]
         return "aim" if passes[0] else "must" if passes[1] else "no"
 
 

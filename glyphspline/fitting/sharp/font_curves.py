@@ -24,7 +24,7 @@ from ...types import BoolArray, FloatArray, IntArray
 from .corners import NO_HANDLE, Joints
 from .cubics import fit_between, is_straight
 from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump, harmonise
-from .lattice import round_run
+from .lattice import meet, round_run
 from .nearness import certified
 from .spline_curve import chord
 
@@ -333,6 +333,7 @@ def fit_run(
     for v in range(masters):
         before += jumps_of(cubics[v], degrees, i, j, closed, em)
         whole = whole and on_grid(cubics[v, i:j], degrees[i:j])
+    last, ends = cubics[:, i:j].copy(), np.arange(n + 1)
     for _ in range(ATTEMPTS):
         r = chosen_nodes(cubics, degrees, joints, i, j, share, limits, places, P)
         if r == n and before == 0 and whole:
@@ -361,8 +362,46 @@ def fit_run(
         if good:
             if r == n and whole and jumps >= before:
                 break
-            return found, i + run.places
-    return cubics[:, i:j].copy(), np.arange(i, j + 1)
+            last, ends = found, run.places
+            break
+    kinds = np.array([degrees[i + ends[s]] if ends[s + 1] == ends[s] + 1 else 3 for s in range(len(ends) - 1)])
+    if masters == 1 and on_grid(last[0], kinds):
+        let_meet(last, cubics, degrees, joints, upright, i, closed, ends, start, limits)
+    return last, i + ends
+
+
+@compiled
+def let_meet(
+    P: FloatArray, cubics: FloatArray, degrees: IntArray, joints: Joints, upright: BoolArray, i: int, closed: bool,
+    places: IntArray, start: IntArray, limits: Limits,
+) -> None:  # fmt: skip
+    """Let curvatures meet at single nodes of a run on the grid, (1, r, 4, 2), where that is certified."""
+    r, m, em = P.shape[1], cubics.shape[1], limits.em
+    share, room, old = np.ones(len(start) + 1), np.empty((2, 250, 8)), np.empty((2, 4, 2))
+    run = as_run(cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], share, share)
+    for q in range(0 if closed else 1, r):
+        a = (q - 1) % r
+        if a == q or end_jump(run.P[a], run.P[q], em) <= 0.1 or joint_turn(run.P[a : a + 1], run.P[q : q + 1]) > KINK:
+            continue
+        may = True
+        for s in (a, q):
+            k = places[s]
+            may = may and (places[s + 1] > k + 1 or degrees[(i + k) % m] > 1) and start[(i + k) % m] < 2
+        old[0], old[1] = run.P[a], run.P[q]
+        if not may or not meet(run, q, joints, i, limits.tolerance, em, room):
+            continue
+        bad = np.zeros(r, dtype=np.bool_)
+        run.held[:] = True
+        run.held[a] = run.held[q] = False
+        now = run.P.copy().reshape((1, r, 4, 2))
+        bad |= misses(now, run, cubics, i, limits)
+        for side in range(2):
+            s = q if side else a
+            beyond = passes(run.P[s]) > max(passes(old[side]), 0.5 * BEYOND * em)
+            bad[s] = bad[s] or beyond or (crosses_handles(run.P[s]) and not crosses_handles(old[side]))
+        if bad[a] or bad[q]:
+            run.P[a], run.P[q] = old[0], old[1]
+    P[0] = run.P
 
 
 @compiled

@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
+from ...curves.cubics import length
 from ...types import FloatArray
 from .corners import Joints
-from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump
+from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, arriving_curvature, end_jump, leaving_curvature
 from .nearness import feet, sample_form, squares
 
 SWEEPS = 4
@@ -28,6 +29,11 @@ TURN, JUMP = 0.0080, 0.095
 
 TURN_PRICE, JUMP_PRICE = 100.0, 2.0
 """What a joint beyond these costs, in mean squares of distance at the tolerance."""
+
+
+MET, NO_KINK, FAREST = 0.095, np.radians(0.45), 0.5
+"""Jump of curvature and turn of a joint at which curvatures are made to meet; and the mean squared distance, in
+tolerances, of a cubic beyond which they are not."""
 
 
 class Measure(NamedTuple):
@@ -239,3 +245,133 @@ def improve(
             best[:] = room[code]
     put_points(run, before, after, best, k)
     return changed
+
+
+@compiled
+def side_places(
+    run: Run, s: int, end: int, level: int, dx: float, dy: float, form: FloatArray, exact: FloatArray, rest: float,
+    far: tuple[float, float, float, bool], em: float, found: FloatArray,
+) -> int:  # fmt: skip
+    """Places of the two inner points of cubic s when the node at one end of it moves by (dx, dy).
+
+    Args:
+        level: the axis on which the handle there stays level; -1 if it may turn. form, exact, rest: see
+            :func:`.nearness.squares`. far: the vector in which the next cubic begins at the other end, its curvature
+            there, and whether that end's handle stays.
+        found: (225, 8) receives the cost, the curvature, the handle's vector, and both points.
+
+    Returns:
+        Their number.
+    """
+    n, h, b, f = (0, 1, 2, 3) if end == 0 else (3, 2, 1, 0)
+    p, own, count = run.P[s], run.P[s].copy(), 0
+    ux, uy, beyond, stays = far
+    x, y = p[b, 0] - p[f, 0], p[b, 1] - p[f, 1]
+    was, jumped = abs(np.arctan2(x * uy - y * ux, -(x * ux + y * uy))), False
+    for step in range(-1, 9):
+        if step == 4 or (stays and step >= 0):
+            continue
+        u, v = (0.0, 0.0) if step < 0 else (step % 3 - 1.0, step // 3 - 1.0)
+        own[b, 0], own[b, 1] = p[b, 0] + u, p[b, 1] + v
+        bx, by = own[b, 0] - p[f, 0], own[b, 1] - p[f, 1]
+        if step >= 0:
+            turn = abs(np.arctan2(bx * uy - by * ux, -(bx * ux + by * uy)))
+            if turn > max(was, NO_KINK) or turn < min(was, 0.22):
+                continue
+        size = max(length(bx, by), 1e-9)
+        own[n, 0], own[n, 1] = p[n, 0] + dx, p[n, 1] + dy
+        for code in range(-1, 9 if level >= 0 else 25):
+            if level >= 0:
+                u, v = (0.0, 0.0) if code < 0 else (code - 4.0, 0.0)
+                u, v = (v, u) if level == 0 else (u, v)
+                u, v = u + dx, v + dy
+            else:
+                u, v = (0.0, 0.0) if code < 0 else (code % 5 - 2.0, code // 5 - 2.0)
+            if code < 0 and (step >= 0 or dx != 0.0 or dy != 0.0):
+                continue
+            own[h, 0], own[h, 1] = p[h, 0] + u, p[h, 1] + v
+            ax, ay, ex, ey = own[h, 0] - own[n, 0], own[h, 1] - own[n, 1], own[b, 0] - own[h, 0], own[b, 1] - own[h, 1]
+            if ax * (p[h, 0] - p[n, 0]) + ay * (p[h, 1] - p[n, 1]) < 1.0:
+                continue
+            other = 2 / 3 * (bx * (own[h, 1] - own[b, 1]) - by * (own[h, 0] - own[b, 0])) / size**3
+            most = max(abs(other), abs(beyond))
+            jump = most * em > 1.0 and abs(other + beyond) > 0.1 * most
+            if code < 0:
+                jumped = jump
+                continue
+            if jump and not jumped and beyond < np.inf:
+                continue
+            cost = squares(own, exact, form, rest)
+            if cost < FAREST:
+                found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / length(ax, ay) ** 3
+                found[count, 2], found[count, 3] = ax, ay
+                found[count, 4], found[count, 5] = own[h, 0], own[h, 1]
+                found[count, 6], found[count, 7] = own[b, 0], own[b, 1]
+                count += 1
+    return count
+
+
+@compiled
+def beyond_end(run: Run, s: int, end: int) -> tuple[float, float, float, bool]:
+    """What cubic s of a run meets at an end, see :func:`side_places`."""
+    r = len(run.P)
+    q = s + 1 if end else s - 1
+    if not run.closed and (q < 0 or q == r):
+        return 0.0, 0.0, np.inf, True
+    p = run.P[q % r]
+    if end:
+        return p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], leaving_curvature(p), False
+    return p[2, 0] - p[3, 0], p[2, 1] - p[3, 1], -arriving_curvature(p), False
+
+
+@compiled
+def meet(run: Run, k: int, joints: Joints, i: int, tolerance: float, em: float, room: FloatArray) -> bool:
+    """Let curvatures meet at a node, by the nearest places of it, its handles, and the handles beyond these.
+
+    Args:
+        room: (2, 250, 8) of work.
+
+    Returns:
+        Whether there are such places.
+    """
+    r, P = len(run.P), run.P
+    a, q = (k - 1) % r, k % r
+    n, c, forms, rest = P[q, 0].copy(), np.empty((3, 2)), np.empty((2, 8, 9)), np.empty(2)
+    exact = P[np.array([a, q])].copy()
+    for side in range(2):
+        s = q if side else a
+        u, v = joints.first[i + run.places[s]], joints.first[i + run.places[s + 1]]
+        Q, x = joints.samples[0, u : v + 1], np.arange(v - u + 1.0) / (v - u)
+        feet(P[s], Q, c, x, np.empty(v - u + 1))
+        rest[side] = sample_form(P[s], c, Q, x, np.ones(v - u + 1), tolerance, forms[side])
+    level = -1
+    for axis in range(2):
+        if P[a, 2, axis] == n[axis] and P[q, 1, axis] == n[axis]:
+            level = axis
+    one, two, least = beyond_end(run, a, 0), beyond_end(run, q, 1), np.inf
+    best = np.empty((5, 2))
+    for code in range(5 if level >= 0 else 9):
+        dx, dy = (code - 2.0, 0.0) if level >= 0 else (code % 3 - 1.0, code // 3 - 1.0)
+        if level == 0:
+            dx, dy = dy, dx
+        before = side_places(run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, room[0])
+        after = side_places(run, q, 0, level, dx, dy, forms[1], exact[1], rest[1], two, em, room[1])
+        for u in range(before):
+            if room[0, u, 0] >= least:
+                continue
+            for v in range(after):
+                cost, x, y = room[0, u, 0] + room[1, v, 0], room[0, u, 1], room[1, v, 1]
+                most = max(abs(x), abs(y))
+                if cost >= least or (most * em > FLAT and abs(x + y) > MET * most):
+                    continue
+                ax, ay, bx, by = -room[0, u, 2], -room[0, u, 3], room[1, v, 2], room[1, v, 3]
+                along = ax * bx + ay * by
+                if along <= 0.0 or abs(ax * by - ay * bx) > NO_KINK * along:
+                    continue
+                least = cost
+                best[0], best[1] = room[0, u, 6:], room[0, u, 4:6]
+                best[2, 0], best[2, 1] = n[0] + dx, n[1] + dy
+                best[3], best[4] = room[1, v, 4:6], room[1, v, 6:]
+    if least < np.inf:
+        P[a, 1:], P[q, :3] = best[:3], best[2:]
+    return least < np.inf
