@@ -61,6 +61,8 @@ class Ufo(Source):
         ascender = 0.8 * em if info.ascender is None else info.ascender
         descender = -0.2 * em if info.descender is None else info.descender
         self.metrics = FontMetrics(em, float(ascender), float(descender))
+        if not max(map(abs, (em, self.metrics.ascender, self.metrics.descender))) < 2.0**63:  # integers of a plist
+            raise FontError("has metrics that are too large for numbers of a font")
         self.default_layer = self._glyph_set(None)
         self.lib = lib = reader.readLib()
         there = set(self.default_layer.contents)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -154,3 +155,12 @@ def test_a_broken_glyph_costs_only_itself(folder: Path, text: str) -> None:
     for broken in ("square", "pair"):  # which has it as a component
         with pytest.raises(GlyphsplineError, match=rf"Small\.ufo, glyph '{broken}': "):
             ufo.outline(broken)
+
+
+@pytest.mark.parametrize("key", ["unitsPerEm", "ascender", "descender"])
+def test_metrics_that_no_plist_can_hold_again_are_refused(folder: Path, key: str) -> None:
+    UFOWriter(folder).writeInfo(SimpleNamespace(**{key: 1}))
+    text = (folder / "fontinfo.plist").read_text()
+    (folder / "fontinfo.plist").write_text(text.replace("<integer>1</integer>", f"<integer>{10**126}</integer>"))
+    with pytest.raises(FontError, match="metrics that are too large"):
+        open_source(folder)
