@@ -85,6 +85,16 @@ def test_curvatures_are_made_to_meet_at_points_that_stay_where_letters_have_them
     assert found.measures.within_tolerance
 
 
+def test_few_jumps_are_left_that_the_grid_can_do_without() -> None:
+    """Places of single nodes and their handles leave 30 of 98; fitting and rounding alone, 32."""
+    before = after = 0
+    for outline in outlines(FONTS / "kouzan-gyosho.otf", "永g好龍"):
+        for contour in gs.convert(outline, OPTIONS).contours:
+            before += jumps(contour.source.cubics(), 1000.0)
+            after += jumps(contour.curve.cubics(), 1000.0)
+    assert after <= 30 < before
+
+
 def test_what_is_good_stays_to_the_byte_with_its_first_point() -> None:
     good = gs.convert(gs.Outline("o", contours=(oval(290.0, 262.0),)), gs.Options(**FOR_FONTS, tolerance=3.0)).contours
     square = gs.Contour(np.array([[0.0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
