@@ -42,8 +42,8 @@ SOFT = 1e-9
 """Share of the dual's diagonal that is added to it, as bounds may contradict each other."""
 
 AROUND = (1, 2)
-"""Steps of the grid around the best place within which ends of handles are sought: one, then two. With one alone 40 %
-of the kinks of a degree or more of seven families are mended, with both 44 %, in half more time."""
+"""Steps of the grid around the best place within which ends of handles are sought: one, then two. With one alone 106
+of 220 kinks of a degree or more of ten variable fonts are mended, with both 108, for up to twice the time."""
 
 SWEEPS = 2
 """How often each handle is put on the grid."""
