@@ -278,7 +278,7 @@ def thousands(fonts: Sequence[Path], here: Path) -> list[Row]:
     """A set of the Latin glyphs of thousands of fonts, without a fit."""
     copies = many(fonts, here / "fonts")
     run = command("dataset", copies, "--out", here / "many", "--script", "Latn", "--no-fit", "--jobs", "2")
-    what = f"a set of the Latin glyphs of {FONTS} fonts, {rows_of(here / 'many')} runs, `--jobs 2`"
+    what = f"a set of the Latin glyphs of {FONTS} fonts, {rows_of(here / 'many')} rows, `--jobs 2`"
     return [
         Row(what, run.seconds, "s", more=False),
         Row("its largest process", run.largest, "MB", 500, more=False, note=f"all together {run.total:.0f} MB"),
@@ -312,10 +312,10 @@ def of_a_million(fonts: Sequence[Path], here: Path) -> list[Row]:
             break
     read = least(ROUNDS_OF_RUNS, *[lambda _, share=share: first_read(taken, share) for share in (0.1, 0.5, 0.9)])
     return [
-        Row(f"a set of {rows_of(out)} runs, a contour each, of {len(plain)} fonts, `--jobs 2`", run.seconds, "s"),
+        Row(f"a set of {rows_of(out)} rows, a contour each, of {len(plain)} fonts, `--jobs 2`", run.seconds, "s"),
         Row("its largest process", run.largest, "MB", 500, more=False, note=f"all together {run.total:.0f} MB"),
         Row(
-            f"one of {count} runs: opened by pyarrow, found by font and gid, set_made an outline",
+            f"one of {count} rows: opened by pyarrow, found by font and gid, made an outline",
             max(read), "s", 0.2, more=False, note="the slowest of three",
         ),
     ]  # fmt: skip
@@ -334,12 +334,12 @@ def first_read(files: Sequence[str], share: float) -> float:
 
 
 def rows_of(out: Path) -> int:
-    """The number of runs of a set."""
+    """The number of rows of a set."""
     return sum(map(rows_in, (out / "data").iterdir()))
 
 
 def rows_in(file: Path) -> int:
-    """The number of runs of a shard."""
+    """The number of rows of a shard."""
     import pyarrow.parquet as pq
 
     return int(pq.read_metadata(file).num_rows)

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 import glyphspline as gs
 from glyphspline.curves.bspline import Spline, bezier_pieces
-from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.method import Method, Parametrisation
 from glyphspline.interpolation.reference import prepare
 from glyphspline.types import FloatArray, IntArray
 
@@ -47,8 +47,12 @@ class Piece:
 class LocalMethod:
     """A closed polygon, its knots, and for each vertex the pieces that its search interval meets."""
 
-    def __init__(self, points: FloatArray, variant: int, knots: ArrayLike | None = None, margin: float = 0.0) -> None:
-        problem = prepare(points, Method(variant, margin=margin, knots="chord" if knots is None else None), knots)
+    def __init__(
+        self, points: FloatArray, variant: int, knots: Parametrisation | ArrayLike = "chord", margin: float = 0.0
+    ) -> None:
+        ruled = isinstance(knots, str)
+        method = Method(variant, margin=margin, knots=knots if ruled else None)  # type: ignore[arg-type]
+        problem = prepare(points, method, None if ruled else knots)
         spline = Spline(problem.points, problem.knots)
         spans = len(problem.knots) - 1
         local = bezier_pieces(spline.full_knots, np.broadcast_to(np.eye(4), (spans, 4, 4)))
