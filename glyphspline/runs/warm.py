@@ -166,6 +166,7 @@ def fonts() -> None:
 
 def masters() -> None:
     """Masters as one curve, with arcs that fail the certificate at first and one that ends on a slanted line."""
+    from ..curves.nearest import near_places
     from ..fitting.convert_masters import convert_masters
     from ..readers.pens import ContourPen
 
@@ -178,6 +179,8 @@ def masters() -> None:
     result.energy_ratio({"wght": 0.5})
     result.turn({"wght": 0.5})
     ContourPen(masters=2).contour(slanted.points, slanted.degrees)  # as readers draw contours outside bulk passes
+    curves, hints = LEAF.cubics(), np.arange(float(len(LEAF)))
+    near_places(1, curves, hints, curves, True, 0.0, 0.0, hints)  # as quadratics of fonts are certified
 
 
 def checks() -> None:
