@@ -71,8 +71,9 @@ class Bound(NamedTuple):
     per: FloatArray
 
 
+@np.errstate(invalid="ignore")
 def turns_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(…,) radians by which joints (…, 5, 2) turn, and their derivatives (…, 5, 2)."""
+    """(…,) radians by which joints (…, 5, 2) turn, and their derivatives (…, 5, 2): not of handles without length."""
     a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
     by_a, by_b = (_turned(v) / (v * v).sum(axis=-1, keepdims=True) for v in (a, b))
     none = np.zeros_like(a)
@@ -99,6 +100,7 @@ def _turned(v: FloatArray) -> FloatArray:
     return np.stack([-v[..., 1], v[..., 0]], axis=-1)
 
 
+@np.errstate(divide="ignore", invalid="ignore")
 def _curvature(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(…,) curvature where a cubic begins, from its first three points (…, 3, 2), and derivatives (…, 3, 2)."""
     a, c = points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 1, :]

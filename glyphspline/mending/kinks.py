@@ -29,6 +29,9 @@ BETTER = 0.7
 LOOSE = 0.9
 """Share of what a joint may turn at most that it is made to turn at most between masters."""
 
+ROOM = 0.6
+"""Share of that again, where no place on the grid turns so little."""
+
 BESIDE = 0.3
 """Degrees by which a smooth joint beside a mended one may turn, if it turned by no more."""
 
@@ -237,16 +240,19 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
             if stretch.farthest(x) > HOPE * design.tolerance:
                 wider.append((stretch.farthest(x), stretch, bounds, x, exact))
                 continue
-            for around in AROUND:
-                points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step, around))
-                if points.tobytes() in seen or not _is_mended(layout, group, points, exact, design):
+            for points in _on_grid(stretch, bounds, x, design):
+                if not _is_mended(layout, group, points, exact, design):
                     continue
+                new = points.tobytes() not in seen
                 seen.add(points.tobytes())
-                proposal = _proposal(group, first, layout, points, design)
+                proposal = _proposal(group, first, layout, points, design) if new else None
+                if proposal is None and new:
+                    continue
                 if proposal is not None and proposal.change <= SMALL * design.em / 1000:
                     yield proposal
                 elif proposal is not None:
                     later.append(proposal)
+                break
         yield from sorted(later, key=lambda each: each.change)
     for least, stretch, bounds, x, exact in sorted(wider, key=lambda each: each[0])[:WIDER]:
         if group.needs is None and group.why in WEAK:
@@ -255,6 +261,16 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
                 found = _proposal(group, first, layout, points, design._replace(tolerance=least))
                 group.needs = found.distance if found else group.needs
                 group.blame(BEYOND)
+
+
+def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, design: Design) -> Iterator[FloatArray]:
+    """Points on the grid near the least moves, and then near those that leave more room for rounding."""
+    for around in AROUND:
+        yield stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step, around))
+    tighter = [bound if bound.is_jump else bound._replace(most=ROOM * bound.most) for bound in bounds]
+    x = stretch.least(tighter, design.places)
+    if stretch.farthest(x) <= HOPE * design.tolerance:
+        yield stretch.places_of(stretch.on_grid(x, tighter, design.places, design.step, AROUND[0]))
 
 
 def _proposal(

@@ -38,7 +38,7 @@ def mended(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "--html",
             str(out / "page.html"),
             "--tolerance",
-            "10",
+            "4",
             "-j",
             "1",
         ],
