@@ -142,8 +142,9 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
 
 
 def for_fonts(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Defaults of a run that writes only fonts, unless what is given asks for other curves."""
-    formats = {name.strip() for name in str(given.get("formats", "")).split(",")}
+    """Defaults of a run that writes only fonts and sources, unless what is given asks for other curves."""
+    formats = {*filter(None, map(str.strip, str(given.get("formats", "")).split(",")))}
+    formats |= {"ufo"} if given.get("in_place") or given.get("layer") is not None else set()
     if not formats & FONTS or (not MASTERS.isdisjoint(given) and "ttf" in formats):
         return {}  # quadratics of all masters are fitted to C2 curves
     asks = formats - FONTS or not OTHER_CURVES.isdisjoint(given) or given.get("corners", "sharp") != "sharp"

@@ -128,7 +128,7 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
             return
         points = np.empty((self._masters, len(self._points), 2))
         if self._masters == 1:
-            points[0] = self._points
+            points[0] = np.reshape(self._points, (-1, 2))
         else:
             for n, (x, y) in enumerate(self._points):
                 points[:, n, 0], points[:, n, 1] = x, y

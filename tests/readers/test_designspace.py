@@ -173,6 +173,13 @@ def test_a_layer_is_a_master_of_the_glyphs_in_it(space: Path) -> None:
     assert masters.axes[0].user(0.25) == 550
 
 
+def test_a_glyph_that_only_the_default_master_draws(space: Path) -> None:
+    change(space, "Regular", "p", box(30, 40))
+    source = open_source(space)
+    assert len(source.masters("p")) == 1
+    assert corners(source, "p") == [[0, 0], [30, 0], [30, 40], [0, 40]]
+
+
 def test_a_component_keeps_the_masters_that_the_glyph_has_not(space: Path) -> None:
     source = open_source(space)
     masters = source.masters("i")
@@ -194,7 +201,9 @@ def test_contours_of_all_kinds_of_segments_close(space: Path) -> None:
 def change(space: Path, file: str, name: str, draw: Callable[[Any], None]) -> None:
     from fontTools.ufoLib.glifLib import GlyphSet
 
-    GlyphSet(space.with_name(f"{file}.ufo") / "glyphs").writeGlyph(name, Drawn(500), draw)
+    glyphs = GlyphSet(space.with_name(f"{file}.ufo") / "glyphs")
+    glyphs.writeGlyph(name, Drawn(500), draw)
+    glyphs.writeContents()
 
 
 def test_own_contours_are_numbered_as_in_the_file(space: Path) -> None:

@@ -316,9 +316,8 @@ def back_to_source(
     with writing(copy or source.path):
         found = write_back(source, glyphs, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
     where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
-    curves = "C2 in all masters"
-    if isinstance(source, Ufo):
-        curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
+    curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
+    curves += "" if isinstance(source, Ufo) else ", in all masters"
     remarks = [f"{where}: new outlines of {counted(found.glyphs, 'glyph')}, {curves}; nothing else changed"]
     kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
     return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
