@@ -481,12 +481,10 @@ def attack(name: str, degree: int, cases: int, checks: int, seed: int) -> Found:
         for k in {*order[:share].tolist(), *rng.integers(0, ROUND, share).tolist()}:
             exact = max(exact, now.miss(k, float(found[k, 0])) / float(sizes[k]))
             checked += 1
-        if turn % RESTART == 0:
-            best, best_misses = taken(now, order[:KEPT]), misses[order[:KEPT]]
-        else:
-            both, all_misses = joined(best, taken(now, order[:KEPT])), np.append(best_misses, misses[order[:KEPT]])
-            order = np.argsort(-all_misses)[:KEPT]
-            best, best_misses = taken(both, order), all_misses[order]
+        if turn % RESTART:
+            now, misses = joined(best, now), np.append(best_misses, misses)
+            order = np.argsort(-misses)
+        best, best_misses = taken(now, order[:KEPT]), misses[order[:KEPT]]
     return Found(f"{name} {degree}", rounds * ROUND, checked, uncertified, exact, sampled)
 
 

@@ -132,7 +132,7 @@ def main() -> int:
     if not program:
         print("freecadcmd is not here")
         return 1
-    bad, contours, named = 0, 0, 0
+    bad = contours = named = 0
     with tempfile.TemporaryDirectory() as temporary:
         folder, jobs = Path(temporary), []
         for path in given.fonts:

@@ -79,18 +79,13 @@ def subset(path: Path, style: str) -> TTFont:
 
 def set_names(font: TTFont, family: str) -> None:
     """A new family name: a changed font should not pass for the one it came from."""
-    names = {
-        0: "Kouzan Aoyagi; released to the public domain",
-        1: family,
-        2: "Regular",
-        3: f"{family} Regular",
-        4: family,
-        5: "Version 1.0",
-        6: family.replace(" ", ""),
-    }
+    names = [
+        "Kouzan Aoyagi; released to the public domain", family, "Regular", f"{family} Regular", family, "Version 1.0",
+        family.replace(" ", ""),
+    ]  # fmt: skip
     font["name"] = newTable("name")
     font["name"].names = []
-    for name_id, text in names.items():
+    for name_id, text in enumerate(names):
         font["name"].setName(text, name_id, 3, 1, 0x409)
 
 

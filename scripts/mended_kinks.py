@@ -13,9 +13,7 @@ import sys
 import time
 from collections import Counter
 from dataclasses import replace
-from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -34,27 +32,14 @@ LOCATIONS = 5
 """Of each glyph, at which it is compared with what it was."""
 
 
-class Family(NamedTuple):
-    """What became of a source: kinks of a degree or more, and counts of glyphs that changed; see the table's head."""
-
-    name: str
-    glyphs: int
-    kinks: list[Change]
-    new: int
-    points: int
-    beyond: int
-    spent: float
-
-    def row(self) -> list[str]:
-        """Of the table."""
-        moves = [each.moved for each in self.kinks if each.is_mended]
-        far = sum(move > 3 for move in moves)
-        found = share(len(moves), len(self.kinks)), share(far, len(moves))
-        counts = self.new, self.points, self.beyond
-        return [
-            self.name, str(self.glyphs), str(len(self.kinks)), *found, *map(str, counts),
-            f"{1000 * self.spent / self.glyphs:.0f} ms",
-        ]  # fmt: skip
+def row(name: str, kinks: list[Change], counts: tuple[float, ...]) -> str:
+    """A line of the table, of the kinks of a degree or more and what :func:`of_source` counts."""
+    moves = [each.moved for each in kinks if each.is_mended]
+    far = sum(move > 3 for move in moves)
+    glyphs, *found, spent = counts
+    mended = share(len(moves), len(kinks)), share(far, len(moves))
+    cells = name, glyphs, len(kinks), *mended, *found, f"{1000 * spent / glyphs:.0f} ms"
+    return table([*map(str, cells)]).splitlines()[0]
 
 
 def share(count: int, of: int) -> str:
@@ -62,8 +47,10 @@ def share(count: int, of: int) -> str:
     return f"{count} ({count / max(of, 1):.0%})"
 
 
-def of_source(path: Path, tolerance: float, most: int, rng: np.random.Generator) -> Family:
-    """Mend glyphs of a source."""
+def of_source(
+    path: Path, tolerance: float, most: int, rng: np.random.Generator
+) -> tuple[list[Change], tuple[float, ...]]:
+    """Mend glyphs of a source: its kinks; numbers of glyphs, new findings, new points and samples beyond, seconds."""
     source = open_source(path)
     assert isinstance(source, (Font, Ufo, Designspace)), path
     names = [name for name in source.glyph_names if not name.startswith(".")]
@@ -85,7 +72,7 @@ def of_source(path: Path, tolerance: float, most: int, rng: np.random.Generator)
         for each in found.changes
         if each.before >= 1
     ]
-    return Family(path.stem, found.glyphs, kinks, new, points, beyond, spent)
+    return kinks, (found.glyphs, new, points, beyond, spent)
 
 
 def reasons(kinks: list[Change]) -> str:
@@ -105,15 +92,14 @@ def main() -> None:
     given = options.parse_args()
     headings = ["", "glyphs", "kinks", "mended", "moved by over 3", "new findings", "points added", "beyond", "a glyph"]
     print(table(headings))
-    families = []
+    kinks: list[Change] = []
+    counts: list[tuple[float, ...]] = []
     for path in given.sources:
-        families.append(of_source(path, given.tolerance, given.glyphs, np.random.default_rng(0)))
-        print(table(families[-1].row()).splitlines()[0], flush=True)
-    _, glyphs, kinks, *counts = zip(*families, strict=True)
-    every = Family("all", sum(glyphs), [*chain(*kinks)], *map(sum, counts))
-    print(table(every.row()).splitlines()[0])
-    print()
-    print(reasons(every.kinks))
+        own, found = of_source(path, given.tolerance, given.glyphs, np.random.default_rng(0))
+        print(row(path.stem, own, found), flush=True)
+        kinks, counts = kinks + own, [*counts, found]
+    print(row("all", kinks, tuple(map(sum, zip(*counts, strict=True)))))
+    print(f"\n{reasons(kinks)}")
 
 
 if __name__ == "__main__":

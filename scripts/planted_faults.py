@@ -29,7 +29,6 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from fontTools.fontBuilder import FontBuilder
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from matplotlib import get_data_path
@@ -38,11 +37,12 @@ import glyphspline as gs
 from glyphspline.checks.check import check_many
 from glyphspline.checks.finding import Finding
 from glyphspline.checks.kinds import KINDS, MENDED
-from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvature, split
+from glyphspline.curves.bezier import cross, derivative_points, evaluate, signed_curvature, split
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
+from scripts.drawn_fonts import begun, ended
 from scripts.survey import faces, parser, table
 
 FACES = (
@@ -81,13 +81,13 @@ def size(vector: FloatArray) -> float:
 
 def angle(a: FloatArray, b: FloatArray) -> float:
     """Degrees from one vector to another."""
-    return float(np.degrees(np.arctan2(a[0] * b[1] - a[1] * b[0], a @ b)))
+    return float(np.degrees(np.arctan2(cross(a, b), a @ b)))
 
 
 def rotated(vector: FloatArray, degrees: float) -> FloatArray:
     """A vector turned to the left."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    return np.array([c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]])
+    turned = complex(*vector) * np.exp(1j * np.radians(degrees))
+    return np.array([turned.real, turned.imag])
 
 
 def tangents(segment: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -281,10 +281,9 @@ def extremum(s: Segments, j: int, unit: float) -> Planted | None:
     first, last = cut(before, 0.5), cut(behind, 0.5)
     p, q = first[1][0], last[0][-1]
     u, v = tangents(first[1])[0], tangents(last[0])[1]
-    cross = u[0] * v[1] - u[1] * v[0]
     if abs(angle(u, v)) < 20 or abs(angle(u, v)) > 150:
         return None
-    reach = ((q - p)[0] * v[1] - (q - p)[1] * v[0]) / cross
+    reach = cross(q - p, v) / cross(u, v)
     meet = p + reach * u
     if reach <= 0 or (q - meet) @ v <= 0:
         return None
@@ -318,10 +317,9 @@ def handles(s: Segments, j: int, unit: float) -> Planted | None:
     if len(s[j]) != 4:
         return None
     u, v, x = s[j][1] - s[j][0], s[j][2] - s[j][3], s[j][3] - s[j][0]
-    cross = u[0] * v[1] - u[1] * v[0]
-    if min(size(u), size(v)) < 10 * unit or abs(cross) < 0.35 * size(u) * size(v):
+    if min(size(u), size(v)) < 10 * unit or abs(cross(u, v)) < 0.35 * size(u) * size(v):
         return None
-    reach, other = (x[0] * v[1] - x[1] * v[0]) / cross, (x[0] * u[1] - x[1] * u[0]) / cross
+    reach, other = cross(x, v) / cross(u, v), cross(x, u) / cross(u, v)
     beside = [angle(*tangents(each)) for each in (s[j - 1], s[(j + 1) % len(s)]) if len(each) > 2]
     if any(turn * angle(*tangents(s[j])) < 0 for turn in beside):
         return None
@@ -382,11 +380,8 @@ def beyond_corner(s: Segments, j: int, unit: float) -> Planted | None:
 
 def cross_over(a: FloatArray, b: FloatArray, c: FloatArray, d: FloatArray) -> bool:
     """Whether two lines, a to b and c to d, cross."""
-
-    def side(p: FloatArray, q: FloatArray, r: FloatArray) -> float:
-        return float((q - p)[0] * (r - p)[1] - (q - p)[1] * (r - p)[0])
-
-    return side(a, b, c) * side(a, b, d) < 0 and side(c, d, a) * side(c, d, b) < 0
+    one, other = b - a, d - c
+    return bool(cross(one, c - a) * cross(one, d - a) < 0 and cross(other, a - c) * cross(other, b - c) < 0)
 
 
 def direction(s: Segments, j: int, unit: float) -> Planted | None:
@@ -421,8 +416,7 @@ def crossed_handles(s: Segments, j: int, unit: float) -> Planted | None:
     back = [segment[::-1] for segment in one.segments[::-1]]
     k = len(s) - 1 - j
     u, v, x = back[k][1] - back[k][0], s[j][1] - s[j][0], back[k][3] - back[k][0]
-    reach = (x[0] * v[1] - x[1] * v[0]) / (u[0] * v[1] - u[1] * v[0])
-    new = with_handle(back, k, 1.5 * reach * u)
+    new = with_handle(back, k, 1.5 * cross(x, v) / cross(u, v) * u)
     return one._replace(segments=[segment[::-1] for segment in new[::-1]])
 
 
@@ -572,9 +566,7 @@ def moved_start(segments: Segments, rng: np.random.Generator) -> Segments:
 def write(path: Path, glyphs: Sequence[list[Segments]], em: int, cubic: bool) -> None:
     """Write a font, in whole units."""
     names = [".notdef", *[f"g{k}" for k in range(len(glyphs))]]
-    builder = FontBuilder(em, isTTF=not cubic)
-    builder.setupGlyphOrder(names)
-    builder.setupCharacterMap({0xE000 + k: name for k, name in enumerate(names[1:])})
+    builder = begun(names, {0xE000 + k: name for k, name in enumerate(names[1:])}, cubic=cubic, em=em)
     drawn: dict[str, Any] = {}
     for name, contours in zip(names, [[], *glyphs], strict=True):
         pen = T2CharStringPen(em, None) if cubic else TTGlyphPen(None)
@@ -591,12 +583,7 @@ def write(path: Path, glyphs: Sequence[list[Segments]], em: int, cubic: bool) ->
         builder.setupGlyf(drawn)
     # A reader moves a glyph of a TrueType font to its left side bearing.
     lefts = {} if cubic else {name: getattr(builder.font["glyf"][name], "xMin", 0) for name in names}
-    builder.setupHorizontalMetrics({name: (em, lefts.get(name, 0)) for name in names})
-    builder.setupHorizontalHeader(ascent=em, descent=0)
-    builder.setupNameTable({"familyName": "Planted", "styleName": "Regular"})
-    builder.setupOS2()
-    builder.setupPost()
-    builder.save(path)
+    ended(builder, {name: (em, lefts.get(name, 0)) for name in names}, "Planted").save(path)
 
 
 def stored(glyphs: Sequence[list[Segments]], em: float, cubic: bool) -> tuple[list[gs.Outline], int]:

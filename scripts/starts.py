@@ -20,8 +20,9 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from scripts.survey import ROOT, parser, table
@@ -32,11 +33,10 @@ CONVERT += ["--format", "svg", "--quiet"]
 PATIENCE = 600.0
 
 
-@dataclass(frozen=True)
-class Start:
-    """A start: whether processes were killed in it, whether it ended, and with all files; its seconds; what it said."""
+class Start(NamedTuple):
+    """A start: whether a process was killed in it, whether it ended, and with all files; its seconds; what it said."""
 
-    killed: int
+    killed: bool
     ended: bool
     whole: bool
     seconds: float
@@ -58,11 +58,11 @@ def workers(parent: int) -> list[int]:
     return found
 
 
-def start(number: int, seed: int, kills: bool, expected: dict[str, bytes], usual: float) -> Start:
+def start(seed: int, kills: bool, expected: dict[str, bytes], usual: float, number: int) -> Start:
     """Start a command, kill one of its workers if asked for, and look at what it has written."""
     rng = random.Random(f"{seed} {number}")
     with tempfile.TemporaryDirectory(prefix="starts-") as folder:
-        began, killed = time.monotonic(), 0
+        began, killed, ended = time.monotonic(), False, True
         run = subprocess.Popen([*CONVERT, "--jobs", "2", "-o", f"{folder}/out"], stderr=subprocess.PIPE, text=True)
         if kills:
             time.sleep(rng.uniform(0, usual))
@@ -70,16 +70,16 @@ def start(number: int, seed: int, kills: bool, expected: dict[str, bytes], usual
                 with suppress(OSError):
                     if those := workers(run.pid):
                         os.kill(rng.choice(those), signal.SIGKILL)
-                        killed = 1
+                        killed = True
                 time.sleep(0.01)
         try:
             _, words = run.communicate(timeout=PATIENCE)
         except subprocess.TimeoutExpired:
             run.send_signal(signal.SIGABRT)  # has it print the stacks of its threads
             _, words = run.communicate()
-            return Start(killed, False, False, time.monotonic() - began, words)
-        whole = run.returncode == 0 and written(Path(folder) / "out") == expected
-        return Start(killed, True, whole, time.monotonic() - began, words)
+            ended = False
+        whole = ended and run.returncode == 0 and written(Path(folder) / "out") == expected
+        return Start(killed, ended, whole, time.monotonic() - began, words)
 
 
 @contextmanager
@@ -102,30 +102,22 @@ def main() -> int:
         subprocess.run([*CONVERT, "--jobs", "2", "-o", f"{folder}/out"], check=True)
         usual, expected = time.monotonic() - began, written(Path(folder) / "out")
     calm = arguments.starts - arguments.loaded - arguments.killed
-    headings = ["starts", "number", "killed in", "ended", "whole", "longest"]
-    print(table(headings), flush=True)
-    bad, number = 0, 0
+    rows: list[list[object]] = []
     for words, count, busy, kills in (
         ("a process killed", arguments.killed, 0, True),
         ("alone", calm, 0, False),
         ("under load", arguments.loaded, 4 * (os.cpu_count() or 1), False),
     ):
+        case, found = partial(start, arguments.seed, kills, expected, usual), []
         with load(busy), ThreadPoolExecutor(arguments.jobs) as threads:
-            numbers = range(number, number + count)
-            made = [threads.submit(start, k, arguments.seed, kills, expected, usual) for k in numbers]
-            found = []
-            for each in made:
-                found.append(each.result())
-                print("." if found[-1].whole else "x", end="", file=sys.stderr, flush=True)
-        number += count
-        for one in found:
-            if not one.whole:
-                bad += 1
-                print(f"{words}, {one.seconds:.0f} s, ended: {one.ended}: {one.words[-3000:]}", flush=True)
-        longest = max((one.seconds for one in found), default=0.0)
-        counts = [sum(one.killed for one in found), sum(one.ended for one in found), sum(one.whole for one in found)]
-        print(table(headings, [[words, count, *counts, f"{longest:.0f} s"]]).splitlines()[-1], flush=True)
-    return int(bad > 0)
+            for one in threads.map(case, range(count)):
+                found.append(one)
+                if not one.whole:
+                    print(f"{words}, {one.seconds:.0f} s, ended: {one.ended}: {one.words[-3000:]}", flush=True)
+        sums = (sum(bool(one[k]) for one in found) for k in range(3))
+        rows.append([words, count, *sums, f"{max((one.seconds for one in found), default=0.0):.0f} s"])
+    print(table(["starts", "number", "killed in", "ended", "whole", "longest"], rows))
+    return int(any(row[1] != row[4] for row in rows))
 
 
 if __name__ == "__main__":

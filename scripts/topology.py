@@ -22,11 +22,10 @@ import logging
 import random
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from itertools import chain, product
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 from fontTools.ttLib import TTFont
 
@@ -39,8 +38,7 @@ from tests.hard_contours import hard_contour, outline_of
 from tests.topology import Drawing, defects, font_contours, unflagged
 
 
-@dataclass(frozen=True)
-class Face:
+class Face(NamedTuple):
     """A face by its file, and the characters of which a glyph went wrong once."""
 
     name: str
@@ -63,13 +61,12 @@ WAYS = [gs.Options(corners=c, hold_corners=h, effort=e) for (c, h), e in product
 HARD_WAYS = [gs.Options(corners=c, hold_corners=h, tolerance=t) for (c, h), t in product(MODES, (0.5, 1.0, 5.0))]
 
 
-@dataclass(frozen=True)
-class Glyph:
+class Glyph(NamedTuple):
     """What went wrong with a glyph in one way of converting it.
 
     Attributes:
         face, character, way: which it is; of what is drawn here, its kind and number.
-        own, pairs, collapsed: new crossings of contours with themselves and with others, and contours without area.
+        wrong: whether contours newly cross themselves, cross others, and have lost their area.
         uncounted: whether the measures say that crossings were not counted.
         silent: in words, what its measures say nothing of.
     """
@@ -77,16 +74,9 @@ class Glyph:
     face: str
     character: str
     way: str
-    own: int
-    pairs: int
-    collapsed: int
+    wrong: tuple[bool, bool, bool]
     uncounted: bool
     silent: tuple[str, ...]
-
-    @property
-    def wrong(self) -> bool:
-        """Whether anything went wrong."""
-        return bool(self.own or self.pairs or self.collapsed)
 
 
 @cache
@@ -128,10 +118,10 @@ def converted(face: str, character: str, way: str, outline: gs.Outline, source: 
     result = gs.convert(outline, options)
     new, collapsed = defects(gs.to_svg(result), source)
     measures = [contour.measures for contour in result.contours]
-    own = sum(count for (i, j), count in new.items() if i == j)
+    found = [pair for pair, count in new.items() if count]
+    wrong = any(i == j for i, j in found), any(i != j for i, j in found), bool(collapsed)
     uncounted = any(each.new_crossings is None for each in measures)
-    silent = tuple(unflagged(new, collapsed, measures))
-    return Glyph(face, character, way, own, sum(new.values()) - own, len(collapsed), uncounted, silent)
+    return Glyph(face, character, way, wrong, uncounted, tuple(unflagged(new, collapsed, measures)))
 
 
 def tasks(count: int, names: Iterable[str]) -> list[tuple[Face, Path, str]]:
@@ -152,10 +142,9 @@ def table_of(glyphs: list[Glyph]) -> str:
     rows: list[list[object]] = []
     for face, way in dict.fromkeys((g.face, g.way) for g in glyphs):
         those = [g for g in glyphs if (g.face, g.way) == (face, way)]
-        columns = [(g.own, g.pairs, g.collapsed, g.uncounted) for g in those]
-        counts = [sum(map(bool, column)) for column in zip(*columns, strict=True)]
+        counts = map(sum, zip(*((*g.wrong, g.uncounted) for g in those), strict=True))
         silent = sum(bool(g.silent) for g in those)
-        rows.append([face, way, len(those), *counts, sum(g.wrong for g in those) - silent, silent])
+        rows.append([face, way, len(those), *counts, sum(any(g.wrong) for g in those) - silent, silent])
     headings = "glyphs of,way,glyphs,cross themselves,cross others,collapsed,not counted,all flagged,not flagged"
     return table(headings.split(","), rows)
 

@@ -227,12 +227,6 @@ def measured(task: Task) -> Found:
         return Found(task, np.nan, np.nan, np.nan, failure.message)
 
 
-def said(found: Found) -> str:
-    """What was measured, in words."""
-    shape, corner, slip = (f"{100 * value:.2f} %" for value in (found.shape, found.corner, found.slip))
-    return f"instances {shape}, corners {corner}, partners {slip} of the em"
-
-
 def compared(originals: list[list[gs.Contour]], order: Sequence[int], masters: Masters) -> tuple[float, float, float]:
     """Largest distances of instances, corners and partners from the true ones, in units."""
     shape = corner = slip = 0.0
@@ -293,7 +287,8 @@ def main() -> int:
     found = list(surveyed(measured, todo, jobs=arguments.jobs, chunk=16))
     for one in found:
         if not one.right():
-            print(f"{one.task.path.name} {one.task.name} seed {one.task.seed}: {one.refused or said(one)}")
+            off = f"instances {one.shape:.2%}, corners {one.corner:.2%}, partners {one.slip:.2%} of the em"
+            print(f"{one.task.path.name} {one.task.name} seed {one.task.seed}: {one.refused or off}")
     heads = [*(f"right at {100 * share:g} %" for share in SHAPES), *(f"partners {100 * share:g} %" for share in SHARES)]
     rows = []
     paths = list(dict.fromkeys(one.task.path for one in found))

@@ -18,6 +18,7 @@ import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -179,14 +180,13 @@ def formats() -> list[Row]:
 
     with tempfile.TemporaryDirectory() as folder:
         here = Path(folder)
-        ours(here / "warm", range(FIRST, FIRST + 50), Options(), ("source",), 1)  # nothing compiles while it is timed
-        return [row for count in (2000, GLYPHS) for row in compared(here, range(FIRST, FIRST + count))]
+        export = partial(ours, options=Options(), formats=("source",), jobs=1)
+        export(here / "warm", range(FIRST, FIRST + 50))  # nothing compiles while it is timed
+        return [row for count in (2000, GLYPHS) for row in compared(here, range(FIRST, FIRST + count), export)]
 
 
-def compared(here: Path, gids: Sequence[int]) -> list[Row]:
+def compared(here: Path, gids: Sequence[int], export: Callable[[Path, Sequence[int]], float]) -> list[Row]:
     """Rows for so many glyphs."""
-    from glyphspline.fitting.options import Options
-
     count = len(gids)
     opened: list[float] = []
 
@@ -198,7 +198,7 @@ def compared(here: Path, gids: Sequence[int]) -> list[Row]:
 
     own, fonttools, forged = least(
         3,
-        lambda k: ours(here / f"ours-{count}-{k}", gids, Options(), ("source",), 1),
+        lambda k: export(here / f"ours-{count}-{k}", gids),
         lambda k: fonttools_export(here / f"plain-{count}-{k}", gids),
         forge,
     )

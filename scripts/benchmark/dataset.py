@@ -24,12 +24,17 @@ from itertools import cycle
 from pathlib import Path
 from time import perf_counter
 
+import glyphspline as gs
+from glyphspline.datasets.rows import fits_of, table_of
+from glyphspline.datasets.spec import DatasetSpec
+
 from .batch import least
 from .check import ANCHORED, LATIN, OTHER_LATIN
 from .measure import Row, Watched, in_words, ratio, run_watched
 
 TORCHFONT = os.environ.get("GLYPHSPLINE_BENCH_TORCHFONT")
 ROUNDS = 3
+NO_FIT = DatasetSpec(options=None)
 MOST = 2000
 """Glyphs of a font that are read."""
 
@@ -145,51 +150,37 @@ def theirs(python: str, code: str, folder: str) -> float:
     return float(run.stdout)
 
 
-def made(path: Path, most: int) -> float:
-    """Seconds a glyph of a table of rows without a fit, the font's opening included."""
-    from glyphspline.datasets.rows import table_of
-    from glyphspline.datasets.spec import DatasetSpec
-    from glyphspline.readers import open_font
+def outlines(path: Path, most: int) -> Iterator[list[gs.Outline]]:
+    """The first glyphs of a font that have contours, some at a time; the font is opened for this."""
+    font = gs.open_font(path)
+    for k in range(0, len(font.glyph_names), 256):
+        if found := [o for o in font.outlines(font.glyph_names[k : k + 256]) if len(o.contours)][:most]:
+            yield found
+        most -= len(found)
 
-    spec, count, names = DatasetSpec(options=None), 0, 0
-    start = perf_counter()
-    font = open_font(path)
-    while count < most and names < len(font.glyph_names):
-        outlines = [o for o in font.outlines(font.glyph_names[names : names + 256]) if len(o.contours)][: most - count]
-        table_of(outlines, None, spec)
-        names, count = names + 256, count + len(outlines)
+
+def made(path: Path, most: int, spec: DatasetSpec = NO_FIT) -> float:
+    """Seconds a glyph of a table of rows, the font's opening included."""
+    start, count = perf_counter(), 0
+    for batch in outlines(path, most):
+        made_of = fits_of(batch, spec) if spec.options else []
+        fits = [fit for fit in made_of if isinstance(fit, gs.GlyphResult)]
+        table_of([fit.outline for fit in fits] or batch, fits or None, spec)
+        count += len(batch)
+    return (perf_counter() - start) / count
+
+
+def drawn(path: Path, most: int) -> float:
+    """Seconds a glyph of its conversion to SVG by the options of data sets."""
+    start, count = perf_counter(), 0
+    for batch in outlines(path, most):
+        count += len([gs.to_svg(glyph) for glyph in gs.convert_many(batch, DatasetSpec().options or gs.Options())])
     return (perf_counter() - start) / count
 
 
 def with_fit() -> Row:
     """Rows with the fit of a data set against the conversion to SVG by the same options, in one process."""
-    from glyphspline.datasets.rows import fits_of, table_of
-    from glyphspline.datasets.spec import DatasetSpec
-    from glyphspline.fitting.convert import convert_many
-    from glyphspline.fitting.results import GlyphResult
-    from glyphspline.readers import open_font
-    from glyphspline.writers.svg.document import to_svg
-
-    spec = DatasetSpec()
-    assert spec.options is not None
-    options = spec.options
-
-    def fitted(write: bool) -> float:
-        start, count = perf_counter(), 0
-        font = open_font(LATIN)
-        names = font.glyph_names[:MOST]
-        for k in range(0, len(names), 64):
-            outlines = [outline for outline in font.outlines(names[k : k + 64]) if len(outline.contours)]
-            count += len(outlines)
-            if write:
-                for glyph in convert_many(outlines, options):
-                    to_svg(glyph)
-            else:
-                fits = [fit for fit in fits_of(outlines, spec) if isinstance(fit, GlyphResult)]
-                table_of([fit.outline for fit in fits], fits, spec)
-        return (perf_counter() - start) / count
-
-    svg, table = least(ROUNDS, lambda _: fitted(True), lambda _: fitted(False))
+    svg, table = least(ROUNDS, lambda _: drawn(LATIN, MOST), lambda _: made(LATIN, MOST, DatasetSpec()))
     return ratio(f"rows of {LATIN.name} with the fit against its conversion to SVG, without files", svg, table, 0.8)
 
 

@@ -81,7 +81,10 @@ def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: A
         number = font.glyph_names.index(glyph)
         old, own = (joints(each, names[number], em) for each, names in zip((before, after), order, strict=True))
         for k, (each, names) in enumerate(zip((before, after), order, strict=True)):
-            counts[k] += points_in(each, names[number]) if "glyf" in before else curves_in(each, names[number])
+            if "glyf" in before:
+                counts[k] += len(each["glyf"][names[number]].getCoordinates(each["glyf"])[0])
+            else:
+                counts[k] += sum(len(s) > 2 for contour in segments(each, names[number]) for s in contour)
         kinks = own[is_kink(own)]
         there = old[is_kink(old)]
         for x, y, turn, *_ in kinks:
@@ -101,22 +104,12 @@ def is_kink(rows: FloatArray) -> FloatArray:
     return (rows[:, 2] >= 0.5) & (rows[:, 2] <= 12) & (rows[:, 4] == 0)
 
 
-def points_in(font: TTFont, glyph: str) -> int:
-    """Points that TrueType stores."""
-    return len(font["glyf"][glyph].getCoordinates(font["glyf"])[0])
-
-
 def segments(font: TTFont, glyph: str) -> list[list[FloatArray]]:
     """The segments of each contour that have a length."""
     glyphs = font.getGlyphSet()
     pen = SegmentPen(glyphs)
     glyphs[glyph].draw(pen)
     return [[s for s in map(np.asarray, contour) if np.ptp(s, axis=0).any()] for contour in pen.contours]
-
-
-def curves_in(font: TTFont, glyph: str) -> int:
-    """Segments that are no lines."""
-    return sum(len(s) > 2 for contour in segments(font, glyph) for s in contour)
 
 
 def joints(font: TTFont, glyph: str, em: float) -> FloatArray:

@@ -10,13 +10,14 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from fontTools.pens.recordingPen import RecordingPen
 from fontTools.svgLib.path import parse_path
 
 import glyphspline as gs
 from glyphspline.fitting.sharp.settings import LONG_LINE
 from glyphspline.outlines.joins import joins
 from glyphspline.types import FloatArray
+
+from ..survey import SegmentPen
 
 ACCURACIES = (4.0, 2.0, 1.5, 1.2, 1.0, 0.8, 0.6, 0.4)
 """In font units; kurbo aims for them and does not promise them."""
@@ -76,17 +77,8 @@ def fitted(contour: gs.Contour, accuracy: float, glyph: gs.Outline) -> list[Any]
         if lines[i]:
             segments.append(cubics[i][[0, 3]].tolist())
             continue
-        found = beziers(fit_to_bezpath(Stretch(cubics[i:j]), accuracy).to_svg())
+        pen = SegmentPen()
+        parse_path(fit_to_bezpath(Stretch(cubics[i:j]), accuracy).to_svg(), pen)
+        found = [segment.tolist() for contour in pen.contours for segment in contour[:-1]]  # the last one closes it
         segments += found or cubics[i:j].tolist()
-    return segments
-
-
-def beziers(path: str) -> list[Any]:
-    """The segments of an SVG path of lines and cubics."""
-    pen, segments, here = RecordingPen(), list[Any](), (0.0, 0.0)
-    parse_path(path, pen)
-    for kind, points in pen.value:
-        if kind in ("lineTo", "curveTo"):
-            segments.append([here, *points])
-        here = points[-1] if points else here
     return segments

@@ -101,8 +101,7 @@ def run_watched(command: Sequence[str]) -> Watched:
             pids = family(process.pid)
             total = max(total, sum(said(pid, "smaps_rollup", "Pss:") for pid in pids))
             largest = max(largest, *(said(pid, "status", "VmHWM:") for pid in pids))
-            # Seconds between two looks.
-            sleep(0.1)
+            sleep(0.1)  # seconds between two looks
         seconds = perf_counter() - start
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, list(command))

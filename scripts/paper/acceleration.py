@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import time
+from collections.abc import Callable
 from typing import Any, Literal
 
 import matplotlib.pyplot as plt
@@ -15,6 +15,7 @@ from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.polygon import as_tangents
 from glyphspline.types import FloatArray
 
+from ..benchmark.batch import least, seconds
 from .clicking import FONTS
 from .common import COLOURS, Run, random_polygons
 from .study import TOLERANCE
@@ -202,15 +203,13 @@ def _any_variant(polygons: list[FloatArray], variant: int) -> dict[str, float]:
 
 def _times(polygons: list[FloatArray], run: Run) -> dict[str, float]:
     """The least of several times by the driver in NumPy, taken in turns, as other work disturbs each."""
-    cases: dict[str, Any] = {"iterate": lambda p: interpolate_any_degree(p, Method()), "accelerate": accelerated}
-    best = dict.fromkeys(cases, np.inf)
-    for _ in range(run.size(REPEATS, 1)):
-        for f, case in cases.items():
-            start = time.perf_counter()
-            for p in polygons[:TIMED]:
-                case(p)
-            best[f] = min(best[f], (time.perf_counter() - start) / len(polygons[:TIMED]) * 1e6)
-    return best
+    few = polygons[:TIMED]
+    cases: dict[str, Callable[[], object]] = {
+        "iterate": lambda: [interpolate_any_degree(p, Method()) for p in few],
+        "accelerate": lambda: [accelerated(p) for p in few],
+    }
+    best = least(run.size(REPEATS, 1), *map(seconds, cases.values()))
+    return {name: 1e6 * time / len(few) for name, time in zip(cases, best, strict=True)}
 
 
 def _picture(passes: dict[str, dict[str, float]], polygon: FloatArray) -> Figure:

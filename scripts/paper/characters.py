@@ -155,8 +155,7 @@ def _worst_place(polygons: list[FloatArray], splines: dict[int, list[gs.Spline]]
         gap = np.hypot(*(two(t) - three(t)).T)
         if gap.max() > best:
             best, centre = float(gap.max()), three(t)[np.argmax(gap)]
-    # Side of the zoomed part, in em.
-    half = 0.2 * em / 2
+    half = 0.2 * em / 2  # of the side of the zoomed part
     return centre[0] - half, centre[0] + half, centre[1] - half, centre[1] + half
 
 

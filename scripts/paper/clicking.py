@@ -47,9 +47,8 @@ def clicked(contour: Contour, em: float, seed: int) -> FloatArray:
     closed = np.concatenate([outline, outline[:1]])
     kept = [*_simplify(closed, 0, opposite, em), *_simplify(closed, opposite, steps, em)]
     clicks = _beside_turns(closed[kept], np.array(kept), steps, BESIDE * steps * em / length)
-    rng = np.random.default_rng(seed)
-    # How far, in em, a click misses the outline (standard deviation).
-    return np.rint(closed[clicks] + rng.normal(0, 0.0012 * em, (len(clicks), 2)))
+    missed = np.random.default_rng(seed).normal(0, 0.0012 * em, (len(clicks), 2))
+    return np.rint(closed[clicks] + missed)
 
 
 def _beside_turns(p: FloatArray, kept: IntArray, steps: int, beside: float) -> IntArray:

@@ -16,7 +16,8 @@ from .local import LocalMethod
 from .study import TOLERANCE
 from .theorems import step_factors
 
-Matrix = list[list[Fraction]]
+Matrix = np.ndarray
+"""Of dtype object, whose entries are fractions: products are exact."""
 
 OFFSETS = ((100, 26, -8, -58, 100), (-97, 20, 22, -22, -100))
 """Footpoints less their knots, in hundredths, of two steps on five uniform knots: within variant 1's intervals."""
@@ -47,40 +48,24 @@ def divided_difference(u: list[Fraction], t: Fraction) -> Fraction:
     return (u[-1] - u[0]) * sum(terms, Fraction(0))
 
 
-def collocation(offsets: tuple[int, ...]) -> Matrix:
-    """B, exactly, on uniform knots, for footpoints at u_i + offset / 100."""
+def error_matrix(offsets: tuple[int, ...]) -> Matrix:
+    """I - B, exactly, on uniform knots, for footpoints at u_i + offset / 100."""
     n = len(offsets)
-    rows = [[Fraction(0)] * n for _ in range(n)]
+    found = np.eye(n, dtype=object)
     for i, o in enumerate(offsets):
         for j in range(-2, 3):
             knots = [Fraction(i + j + k) for k in range(-2, 3)]
-            rows[i][(i + j) % n] += divided_difference(knots, i + Fraction(o, 100))
-    return rows
-
-
-def error_matrix(offsets: tuple[int, ...]) -> Matrix:
-    """I - B."""
-    return [[(i == j) - b for j, b in enumerate(row)] for i, row in enumerate(collocation(offsets))]
-
-
-def times(A: Matrix, B: Matrix) -> Matrix:
-    """The product of two matrices."""
-    return [
-        [sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in zip(*B, strict=True)]
-        for row in A
-    ]
+            found[i, (i + j) % n] -= divided_difference(knots, i + Fraction(o, 100))
+    return found
 
 
 def characteristic(A: Matrix) -> list[Fraction]:
     """Coefficients, by descending powers, of det(λ - A): the method of Faddeev and Le Verrier."""
-    n = len(A)
-    coefficients, M = [Fraction(1)], [[Fraction(0)] * n for _ in range(n)]
-    for k in range(1, n + 1):
-        M = times(A, M)
-        for i in range(n):
-            M[i][i] += coefficients[-1]
-        product = times(A, M)
-        coefficients.append(-sum((product[i][i] for i in range(n)), Fraction(0)) / k)
+    one = np.eye(len(A), dtype=object)
+    coefficients, M = [Fraction(1)], 0 * one
+    for k in range(1, len(A) + 1):
+        M = A @ M + coefficients[-1] * one
+        coefficients.append(-np.trace(A @ M) / k)
     return coefficients
 
 
@@ -97,14 +82,14 @@ def all_inside(polynomial: list[Fraction], radius: Fraction) -> bool:
 
 def lemma_1(run: Run) -> None:
     """Two matrices of spectral radius below 0.91 whose product has one above 1.5, decided in exact arithmetic."""
-    A, B = (error_matrix(o) for o in OFFSETS)
-    product = times(B, A)
+    A, B = map(error_matrix, OFFSETS)
+    product = B @ A
     below, above = Fraction(91, 100), Fraction(3, 2)
     single = all(all_inside(characteristic(M), below) for M in (A, B))
     grows = not all_inside(characteristic(product), above)
     if not (single and grows):
         raise ArithmeticError("the example of Lemma 1 does not hold")
-    floats = {name: np.array(M, dtype=np.float64) for name, M in (("first", A), ("second", B), ("product", product))}
+    floats = {name: M.astype(np.float64) for name, M in (("first", A), ("second", B), ("product", product))}
     run.claim(
         "lemma-1",
         {

@@ -82,8 +82,7 @@ class LocalMethod:
             x = [piece.low]
             if piece.low < piece.high:
                 zeros = np.roots(_slope(c))
-                # Zeros with a smaller imaginary part count as real.
-                real = zeros.real[np.abs(zeros.imag) < 1e-7]
+                real = zeros.real[np.abs(zeros.imag) < 1e-7]  # those with a smaller imaginary part count as real
                 x += [piece.high, *real[(piece.low < real) & (real < piece.high)].tolist()]
             for y in x:
                 parameters.append(piece.start + piece.length * y)

@@ -33,7 +33,6 @@ from scripts.paper.lemmas import (
     characteristic,
     divided_difference,
     error_matrix,
-    times,
 )
 from scripts.paper.local import LocalMethod, order_of
 from scripts.paper.rates import (
@@ -129,7 +128,7 @@ def test_no_peak_is_below_four_ninths() -> None:
 
 def test_lemma_1_example_exactly() -> None:
     A, B = (error_matrix(o) for o in OFFSETS)
-    product = times(B, A)
+    product = B @ A
     for M in (A, B):
         assert all(sum(row) == 0 for row in M)
         assert all_inside(characteristic(M), Fraction(91, 100))
