@@ -80,29 +80,21 @@ class Segments(NamedTuple):
         return cls(points, contours.degrees, contours.offsets, *arranged(points, contours.degrees, contours.offsets))
 
 
-@compiled
 def arranged(
     points: ComplexArray, degrees: IntArray, offsets: IntArray
 ) -> tuple[IntArray, IntArray, ComplexArray, ComplexArray]:
     """(m,) neighbours of each segment, and handles; see :class:`Segments`."""
     m = len(points)
+    handles = []
+    for arms in (points[:, 1:] - points[:, :1], points[:, 3:] - points[:, 2::-1]):
+        long = np.abs(arms.real) + np.abs(arms.imag) > NO_HANDLE
+        handles.append(np.where(long.any(axis=1), 3 / degrees * arms[np.arange(m), long.argmax(axis=1)], 0))
+    own = np.flatnonzero(handles[0])
+    contour, k = np.searchsorted(offsets, own, side="right"), np.arange(len(own))
+    first, last = np.searchsorted(contour, contour), np.searchsorted(contour, contour, side="right") - 1
     before, behind = np.arange(m), np.arange(m)
-    handles = np.zeros((2, m), dtype=np.complex128)
-    for c in range(len(offsets) - 1):
-        start = previous = -1
-        for j in range(offsets[c], offsets[c + 1]):
-            for k in range(3, 0, -1):
-                for end, arm in enumerate((points[j, k] - points[j, 0], points[j, 3] - points[j, 3 - k])):
-                    if abs(arm.real) + abs(arm.imag) > NO_HANDLE:
-                        handles[end, j] = 3 / degrees[j] * arm
-            if handles[0, j] != 0:
-                if previous < 0:
-                    start = j
-                else:
-                    before[j], behind[previous] = previous, j
-                previous = j
-        if previous >= 0:
-            before[start], behind[previous] = previous, start
+    before[own] = own[np.where(k == first, last, k - 1)]
+    behind[own] = own[np.where(k == last, first, k + 1) % max(len(own), 1)]
     return before, behind, handles[0], handles[1]
 
 

@@ -70,28 +70,15 @@ class Chains(NamedTuple):
     groups: FloatArray
 
 
-@compiled
 def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
     """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,)."""
-    m = len(cubics)
-    owners, bends = np.empty(m, dtype=np.int64), np.empty(m)
-    boxes, groups = np.empty((m, 4)), np.empty(((m + GROUP - 1) // GROUP, 4))
-    for c in range(len(offsets) - 1):
-        owners[offsets[c] : offsets[c + 1]] = c
-    for s in range(m):
-        b, box, group = cubics[s], boxes[s], groups[s // GROUP]
-        for axis in range(2):
-            box[axis] = min(min(b[0, axis], b[1, axis]), min(b[2, axis], b[3, axis]))
-            box[axis + 2] = max(max(b[0, axis], b[1, axis]), max(b[2, axis], b[3, axis]))
-            first = s % GROUP == 0
-            group[axis] = box[axis] if first else min(group[axis], box[axis])
-            group[axis + 2] = box[axis + 2] if first else max(group[axis + 2], box[axis + 2])
-        bends[s] = 0.0
-        for k in range(2):
-            x = b[k, 0] - 2 * b[k + 1, 0] + b[k + 2, 0]
-            y = b[k, 1] - 2 * b[k + 1, 1] + b[k + 2, 1]
-            bends[s] = max(bends[s], 0.75 * length(x, y))
-    return Chains(cubics, offsets, owners, bends, boxes, groups)
+    boxes = np.concatenate([cubics.min(axis=1), cubics.max(axis=1)], axis=1)
+    starts = np.arange(0, len(cubics), GROUP)
+    low, high = np.minimum.reduceat(boxes[:, :2], starts), np.maximum.reduceat(boxes[:, 2:], starts)
+    seconds = cubics[:, :2] - 2 * cubics[:, 1:3] + cubics[:, 2:]
+    bends = 0.75 * np.sqrt((seconds * seconds).sum(axis=2)).max(axis=1)
+    owners = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+    return Chains(cubics, offsets, owners, bends, boxes, np.concatenate([low, high], axis=1))
 
 
 @compiled
@@ -224,7 +211,8 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
                 s, z, d = nearest_of_outline(other, x, y, s, z, slack, places)
                 ends[first + i, 0], ends[first + i, 1] = s, z
                 if d > row[SEEN]:
-                    note(row, d, x, y, side, c, other, s, z)
+                    row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, c
+                    row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
             last = one.offsets[c + 1] - 1
             for i in range(start, last + 1):
                 j = i + 1 if i < last else start
@@ -261,7 +249,8 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             s0, z0, s1, z1 = int(marks[top, 2]), marks[top, 3], int(marks[top, 4]), marks[top, 5]
             s, z, d = nearest_of_outline(other, x, y, s0, z0, slack, places)
             if d > row[SEEN]:
-                note(row, d, x, y, side, one.owners[i], other, s, z)
+                row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, one.owners[i]
+                row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
                 limit = max(bound, d + max(least, SHARP * d))
             marks[top, 1], marks[top, 4], marks[top, 5] = middle, s, z
             marks[top, 6] = section_bound(one.cubics, i, low, middle, other, s0, z0, s, z, limit, sections)
@@ -270,15 +259,6 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             marks[top, 4], marks[top, 5] = s1, z1
             marks[top, 6] = section_bound(one.cubics, i, middle, high, other, s, z, s1, z1, limit, sections)
     row[BOUND] = max(bound, row[SEEN]) + ROUNDING * max(extent(old.cubics), extent(new.cubics))
-
-
-@compiled
-def note(
-    row: FloatArray, d: float, x: float, y: float, side: int, contour: int, other: Chains, s: int, z: float
-) -> None:
-    """Keep a point that is farther from the other outline than those before."""
-    row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, contour
-    row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
 
 
 @compiled

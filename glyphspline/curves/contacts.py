@@ -14,6 +14,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
+from .bezier import evaluate
 from .cubics import jet, length
 
 STEPS, HALVINGS = 32, 50
@@ -84,25 +85,15 @@ class _Strand:
         return float((end - begin + self.total / 2) % self.total - self.total / 2)
 
     def reach(self, place: float, to: float) -> float:
-        """How far the contour goes from a place on the shorter way to another one."""
+        """How far the contour goes from a place on the shorter way to another one: to points of each piece."""
         low, high = (place, to) if self.way(place, to) >= 0 else (to, place)
-        return float(farthest(self.cubics, low, high + len(self.cubics) * (high < low)))
-
-
-@compiled
-def farthest(cubics: FloatArray, low: float, high: float) -> float:
-    """Largest distance of points of a closed chain between two places from its point at the first one."""
-    m, most, place = len(cubics), 0.0, low
-    s = int(low)
-    x0, y0, _, _, _, _ = jet(cubics, s % m, low - s)
-    while place < high:
-        end = min(high, np.floor(place) + 1.0)
-        s = int(place)
-        for k in range(1, STEPS + 1):
-            x, y, _, _, _, _ = jet(cubics, s % m, place - s + (end - place) * k / STEPS)
-            most = max(most, length(x - x0, y - y0))
-        place = end
-    return most
+        high += len(self.cubics) * (high < low)
+        ends = np.array([low, *range(int(low) + 1, int(np.ceil(high))), high])
+        pieces = ends[:-1].astype(np.int64)
+        x = ends[:-1, None] - pieces[:, None] + np.diff(ends)[:, None] * np.linspace(0, 1, STEPS + 1)
+        chain = self.cubics[np.repeat(pieces % len(self.cubics), STEPS + 1)]
+        points = evaluate(chain, x.ravel())
+        return float(np.hypot(*(points - points[0]).T).max())
 
 
 @compiled
