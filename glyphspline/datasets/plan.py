@@ -83,7 +83,9 @@ class Plan:
 
     def chunks(self, shard: Shard) -> Iterator[Sequence[Task]]:
         """The tasks of a shard in order, in chunks of one font each."""
-        size = max(1, min(self.sizes.chunk, self.sizes.chunk_bytes // self.spec.glyph_bytes))
+        # What points, tangents, curvature and pixels of a glyph with eight contours need in memory.
+        need = 8 * 20 * (self.spec.points or 64) + (self.spec.raster or 0) ** 2
+        size = max(1, min(self.sizes.chunk, self.sizes.chunk_bytes // need))
         for font, first, last in shard.pieces:
             yield from slices([Task(self.fonts[font], k) for k in range(first, last)], size)
 

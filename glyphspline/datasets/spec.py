@@ -63,11 +63,6 @@ class DatasetSpec:
     )
     test: float = option(0.1, "Put this share of the families into the split test.", SPLIT, "SHARE", rule=SHARE)
 
-    @property
-    def glyph_bytes(self) -> int:
-        """About what points, tangents, curvature and pixels of a glyph with eight contours need in memory."""
-        return 8 * 20 * (self.points or 64) + (self.raster or 0) ** 2
-
     def __post_init__(self) -> None:
         check(self)
         require(self.options is None or isinstance(self.options, Options), "options are Options, or None", self.options)

@@ -81,7 +81,8 @@ class Gallery:
             found = re.fullmatch(r"table-(\d{5,})\.js", path.name)
             if found and int(found[1]) >= self._tables:
                 path.unlink()
-        write_index(self._out, [""], _heading(run))
+        font = run.get("font", {})
+        write_index(self._out, [""], f"{font.get('family', 'Glyphs')} {font.get('style', '')}".strip())
 
     def _end_table(self) -> None:
         text = f'glyphsplineData({{"columns":{as_json(COLUMNS)},"rows":[{",".join(self._rows)}]}});\n'
@@ -137,11 +138,6 @@ def layer_switches() -> str:
         for name, (label, key) in LAYERS.items()
     )
     return f'<fieldset class="layers"><legend class="unseen">Layers</legend>{switches}</fieldset>'
-
-
-def _heading(run: Mapping[str, Any]) -> str:
-    font = run.get("font", {})
-    return f"{font.get('family', 'Glyphs')} {font.get('style', '')}".strip()
 
 
 def _run(run: Mapping[str, Any], count: int) -> dict[str, Any]:

@@ -115,10 +115,6 @@ class Unfinished:
         self._next += 1
         return self._next - 1
 
-    def remove(self) -> None:
-        """Remove the folder."""
-        remove_unfinished(self._folder.parent)
-
 
 def remove_unfinished(out: Path) -> None:
     """Remove the chunks of an unfinished table from a run's folder."""
@@ -158,7 +154,7 @@ class Rows:
         found = sorted(self._where.keys() & set(gids))
         with replacing(self._path) as file:
             count = write_rows(self._tables(found), file)
-        self._kept.remove()
+        remove_unfinished(self._path.parent)
         self._piece.cache_clear()
         return count
 

@@ -179,13 +179,10 @@ class RunSpec:
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
         own = tuple(name for name in self.formats if name not in WHOLE)
-        polygon = GALLERY in own and not self.masters
-        return (*own, *([POLYGON] if polygon else []), *([RESULTS] if self.has_results else []))
-
-    @property
-    def has_results(self) -> bool:
-        """Whether results are stored: fonts are made of them. The rows of a table are kept elsewhere."""
-        return self.masters or self.is_back or not {*self.whole} <= {PARQUET}
+        polygon = [POLYGON] if GALLERY in own and not self.masters else []
+        # Fonts are made of results. The rows of a table are kept elsewhere.
+        results = [RESULTS] if self.masters or self.is_back or not {*self.whole} <= {PARQUET} else []
+        return (*own, *polygon, *results)
 
     @property
     def whole(self) -> tuple[str, ...]:

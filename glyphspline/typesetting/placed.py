@@ -189,7 +189,10 @@ class Layout:
 
     def _fitted(self, parts: Parts, options: Options, fit: Fit | None) -> list[GlyphResult]:
         outlines = list(parts.outlines)
-        if _rounded_anew(parts, options.precision):
+        steps, quarters = parts.origin * 10.0**options.precision, parts.angle * (2.0 / np.pi)
+        if any(
+            np.abs(values - np.round(values)).max(initial=0.0) > 1e-6 for values in (steps, quarters)
+        ):  # rounded anew
             moved = sqrt(2.0) * 10.0**-options.precision
             outlines = [replace(outline, snapped=outline.snapped + moved) for outline in outlines]
         found = fit(outlines, options) if fit else convert_many(outlines, options, errors="return")
@@ -215,13 +218,6 @@ def _chosen(ends: IntArray, parts: Parts) -> tuple[IntArray, Motion]:
     """Which contours the text has, and how each is moved; ``ends``: where those of each part begin."""
     contours, offsets = members_of(ends, parts.which)
     return contours, Motion.by(parts.origin, parts.angle).repeated(np.diff(offsets))
-
-
-def _rounded_anew(parts: Parts, precision: int) -> bool:
-    """Whether moving the parts gives coordinates more than ``precision`` decimals."""
-    steps = parts.origin * 10.0**precision
-    quarters = parts.angle * (2.0 / np.pi)
-    return any(bool(np.abs(values - np.round(values)).max(initial=0.0) > 1e-6) for values in (steps, quarters))
 
 
 def _name(font: Source, gid: int) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -46,9 +46,7 @@ from ..summary import NAMED, Summary
 
 if TYPE_CHECKING:
     from ...curves.curvature import Comb
-    from ...readers.designspace import Designspace
-    from ...readers.ufo import Ufo
-    from ...writers.back.back import New
+    from ...writers.font.master_deltas import Redrawn
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -176,7 +174,7 @@ def convert_font(
         if left or (rows and rows.added) or not all(path.exists() for path in font_files(source, out, spec)):
             summary.remarks += write_fonts(source, out, spec, rows)
         if spec.is_back:
-            summary.remarks += results_to_source(source, results_of(source, out, spec), spec)
+            summary.remarks += back_to_source(source, results_of(source, out, spec), spec)
     summary.missing = getattr(glyphs, "missing", ())
     if not spec.options.is_fixed:
         each_its_em = spec.options.tolerance is None and isinstance(source, SvgDrawings)
@@ -267,7 +265,7 @@ def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> 
         glyphs = results_of(source, out, spec)
         with writing(path):
             if path.suffix == ".ufo" and source.format == "UFO":
-                remarks += results_to_source(source, glyphs, spec, path)
+                remarks += back_to_source(source, glyphs, spec, path)
             elif path.suffix == ".ufo":
                 from ...writers.ufo_folder import write_ufo
 
@@ -291,30 +289,23 @@ def check_back(source: Source, spec: RunSpec) -> None:
         raise OutputError("the outlines of a designspace go back in all masters: add --masters", font=str(source.path))
 
 
-def results_to_source(
-    source: Source, glyphs: Iterable[GlyphResult], spec: RunSpec, copy: Path | None = None
-) -> list[str]:
-    """Write results into a UFO; see :func:`back_to_source`."""
-    from ...readers.ufo import Ufo
-    from ...writers.back.back import of_results
-
-    assert isinstance(source, Ufo)
-    return back_to_source(source, of_results(source, glyphs), spec, copy)
-
-
 def back_to_source(
-    source: Ufo | Designspace, glyphs: Iterable[New], spec: RunSpec, copy: Path | None = None
+    source: Source, glyphs: Iterable[GlyphResult] | Mapping[str, Redrawn], spec: RunSpec, copy: Path | None = None
 ) -> list[str]:
-    """Write new outlines into the source, or a copy of it; returns remarks for the summary.
+    """Write results into the source, a UFO, or those of all masters into a designspace; or into a copy of it.
+
+    Returns remarks for the summary.
 
     Raises:
         OutputError: a file cannot be written.
     """
     from ...readers.ufo import Ufo
-    from ...writers.back.back import write_back
+    from ...writers.back.back import of_masters, of_results, write_back
 
+    own: Any = source
+    new = of_masters(own, glyphs) if isinstance(glyphs, Mapping) else of_results(own, glyphs)
     with writing(copy or source.path):
-        found = write_back(source, glyphs, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
+        found = write_back(own, new, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
     where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
     curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
     curves += "" if isinstance(source, Ufo) else ", in all masters"

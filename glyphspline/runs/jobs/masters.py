@@ -342,13 +342,11 @@ def _write_fonts(
         summary.remarks.append(_replaced(path, facts, [each["bound"] for each in stored.values()]))
         stays |= facts.left
     if isinstance(source, Designspace) and ("ufo" in spec.formats or spec.is_back):
-        from ...writers.back.back import of_masters
-
         copy = paths.get("ufo")
         if copy and isinstance(source, GlyphsFile):
             copy = copy.with_suffix(".glyphs")
         for to in [copy] * ("ufo" in spec.formats) + [None] * spec.is_back:
-            summary.remarks += back_to_source(source, of_masters(source, redrawn), spec, to)
+            summary.remarks += back_to_source(source, redrawn, spec, to)
     elif "ufo" in spec.formats:
         from ...writers.ufo_folder import write_designspace
 
