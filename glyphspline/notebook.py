@@ -90,7 +90,7 @@ def curve_svg(curve: Spline | Interpolation) -> str:
     if spline.control_points.shape[1] > 2:
         return _space_svg(curve)
     control, marks, cubics = spline.control_points, _marks(curve), _cubics(spline)
-    strokes, comb = [], _comb_of(cubics, None)
+    strokes, comb = [], _comb_of(cubics)
     for colour, teeth in comb.items():
         ends = np.array([0, *range(2, 2 * len(teeth) + 1, 2)])
         strokes.append((colour, Polylines(teeth.reshape(-1, 2), ends, np.zeros(len(teeth), dtype=np.bool_))))
@@ -127,13 +127,13 @@ def _marks(curve: Spline | Interpolation) -> dict[str, FloatArray]:
     return {**vertices, "knots": spline(spline.knots), "footpoints": spline(curve.parameters)}
 
 
-def _comb_of(cubics: FloatArray, scale: float | None) -> dict[str, FloatArray]:
+def _comb_of(cubics: FloatArray) -> dict[str, FloatArray]:
     """Teeth (k, 2, 2) of a curve in the plane by colour; its own extent is the em."""
     from .writers.svg.comb import SIDES, SPACING, TOOTH, colour_classes, palette, teeth_of
 
     extent = float(np.ptp(cubics, axis=(0, 1)).max())
     item = curvature_comb(cubics, SPACING * extent)
-    drawn = teeth_of(item, extent * REACH / TOOTH, robust_scale([item]) if scale is None else scale)
+    drawn = teeth_of(item, extent * REACH / TOOTH, robust_scale([item]))
     teeth, classes = np.stack([drawn.feet, drawn.tips], axis=1), colour_classes(drawn.relative)
     return {colour: teeth[classes == k] for k, colour in enumerate(palette(), -SIDES) if (classes == k).any()}
 

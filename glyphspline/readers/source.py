@@ -238,20 +238,22 @@ class Source(ABC):
 
     def _head(self, glyph: str | int) -> Head | FontError:
         if isinstance(glyph, str):
-            gid = self._gids.get(glyph, -1)
+            gid = self.gids.get(glyph, -1)
         else:
             gid = glyph if 0 <= glyph < len(self.glyph_names) else -1
         if gid < 0:
             return FontError("the font has no such glyph", font=str(self.path), glyph=str(glyph))
         name = self.glyph_names[gid]
-        return Head(name, gid, self._unicodes.get(name, ()))
+        return Head(name, gid, self.unicodes.get(name, ()))
 
     @cached_property
-    def _gids(self) -> dict[str, int]:
+    def gids(self) -> dict[str, int]:
+        """Glyph name to glyph index."""
         return {name: gid for gid, name in enumerate(self.glyph_names)}
 
     @cached_property
-    def _unicodes(self) -> dict[str, tuple[int, ...]]:
+    def unicodes(self) -> dict[str, tuple[int, ...]]:
+        """Glyph name to its code points, ascending, of glyphs that have some."""
         codes = defaultdict(list)
         for code in sorted(self.cmap):
             codes[self.cmap[code]].append(code)

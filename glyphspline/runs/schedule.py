@@ -74,10 +74,7 @@ def _reader(place: Place, metrics: FontMetrics | None) -> Read:
 
 def heads_of(source: Source) -> dict[str, Head]:
     """The glyphs of a source by their names, in glyph index order."""
-    codes: dict[str, list[int]] = {name: [] for name in source.glyph_names}
-    for code in sorted(source.cmap):
-        codes[source.cmap[code]].append(code)
-    return {name: (name, gid, tuple(codes[name])) for gid, name in enumerate(source.glyph_names)}
+    return {name: (name, gid, source.unicodes.get(name, ())) for name, gid in source.gids.items()}
 
 
 class InProcess(Executor):

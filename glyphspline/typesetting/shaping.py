@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from functools import cached_property
 from typing import NamedTuple
 from unicodedata import normalize
 
@@ -173,7 +172,7 @@ class PlainShaper(Shaper):
         self._advances = {gid: getattr(outline, "advance", 0.0) for gid, outline in zip(gids, outlines, strict=True)}
 
     def _glyph(self, code: int) -> int:
-        return self._gids.get(self._name(code) or ".notdef", -1)
+        return self.source.gids.get(self._name(code) or ".notdef", -1)
 
     def _name(self, code: int) -> str | None:
         return self.source.cmap.get(code) or (self.source.cmap.get(0x20) if chr(code) in SPACES else None)
@@ -182,7 +181,3 @@ class PlainShaper(Shaper):
         """See :meth:`Shaper.has`; as it is, composed or decomposed."""
         forms = (cluster, normalize("NFC", cluster), normalize("NFD", cluster))
         return any(all(self._name(ord(character)) for character in form) for form in forms)
-
-    @cached_property
-    def _gids(self) -> dict[str, int]:
-        return {name: gid for gid, name in enumerate(self.source.glyph_names)}

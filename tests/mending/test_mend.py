@@ -226,7 +226,7 @@ def test_a_bare_layer_is_called_glyphspline(tmp_path: Path) -> None:
         app, ["convert", str(tmp_path / "Bold.ufo"), "--text", "a", "-o", str(tmp_path / "o"), "-j", "1", "--layer"]
     )
     assert run.exit_code == 0, run.output
-    assert "layer glyphspline of Bold.ufo: new outlines of 0 glyphs, C2 (" in run.output
+    assert "layer glyphspline of Bold.ufo: new outlines of 0 glyphs, G2, as fonts store them" in run.output
 
 
 @pytest.mark.parametrize("layer", [None, "mended"])

@@ -106,7 +106,7 @@ class Font(Source):
             self.num_glyphs = len(self.glyph_names)
             check_characters(tables.reader["cmap"] if "cmap" in tables else b"")
             mapped = (tables.getBestCmap() or {}).items()
-            self.cmap = MappingProxyType({code: name for code, name in mapped if name in self._gids})
+            self.cmap = MappingProxyType({code: name for code, name in mapped if name in self.gids})
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))

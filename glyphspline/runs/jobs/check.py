@@ -245,7 +245,7 @@ def check_font(
     chosen = tags if axes is None else tuple(axes)
     if unknown := [tag for tag in chosen if tag not in tags]:
         raise FontError(f"no axis {unknown[0]!r}: it has {', '.join(tags) or 'none'}", font=str(source.path))
-    index = {name: gid for gid, name in enumerate(source.glyph_names)}
+    index = source.gids
     if unknown := [name for name in names if name not in index]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
     tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]

@@ -172,8 +172,7 @@ def mend_source(
         from ...writers.back.back import editable
 
         editable(source)
-    index = {name: gid for gid, name in enumerate(source.glyph_names)}
-    tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
+    tasks: list[Head] = [(name, source.gids[name], ()) for name in sorted({*names}, key=source.gids.__getitem__)]
     job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
     found, new = MendedSource(str(source.path)), []
     with workers(0, executor=executor) as pool:
