@@ -19,7 +19,9 @@ import uharfbuzz as hb
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic, derivative_points, signed_curvature
 from glyphspline.curves.cubics import turns
+from glyphspline.curves.fairness import curvature_extrema
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
+from glyphspline.fitting.measures import CORNER, extrema_floor
 from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.types import BoolArray, FloatArray
 from glyphspline.writers.font.master_deltas import Redrawn
@@ -42,8 +44,7 @@ def main() -> None:
     options = parser(__doc__, text=TEXT, gids="", effort="fast", corners="sharp", seed=1)
     options.add_argument("fonts", nargs="+", type=Path)
     given = options.parse_args()
-    for path in given.fonts:
-        font = gs.open_font(path)
+    for font in map(gs.open_font, given.fonts):
         names = font.select(gids=given.gids) if given.gids else font.select(text=given.text)
         check(font, names, gs.Options(corners=given.corners, effort=given.effort), np.random.default_rng(given.seed))
 
@@ -51,7 +52,7 @@ def main() -> None:
 def check(font: gs.Font, names: tuple[str, ...], options: gs.Options, rng: np.random.Generator) -> None:
     """Convert glyphs of a font, and print what is counted."""
     results: list[MastersResult] = []
-    compared: list[tuple[float, float]] = []
+    compared: list[tuple[float, float, int]] = []
     together = apart = 0.0
     least = 0
     for name in names:
@@ -78,14 +79,15 @@ def check(font: gs.Font, names: tuple[str, ...], options: gs.Options, rng: np.ra
     uncertified = [r.masters.name for r in results if not all(contour.within_tolerance for contour in r.contours)]
     stopping = [r.masters.name for r in results if not all(contour.regular for contour in r.contours)]
     segments, source = sum(len(c.curve) for c in contours), sum(len(c.source) for c in contours)
-    away, bends = np.array(compared).reshape(-1, 2).T
+    away, bends, extrema = np.array(compared).reshape(-1, 3).T
     print(f"{font.path.name}, {options.corners}, {options.effort}: {len(results)} glyphs, {len(contours)} contours")
     print(f"  not certified: {uncertified or 0}; not proven free of cusps: {stopping or 0}")
     ratios = f"{segments / least:.3f} of the worst single master's, {segments / source:.3f} of the source's"
     print(f"  segments {segments}: {ratios}")
-    beyond, largest = (away > 1 + 1e-6).sum(), away.max(initial=0.0)
-    print(f"  {len(away)} instances of contours compared, {beyond} beyond; largest {largest:.3f} of the tolerance")
+    beyond, largest = (away > 1 + 1e-6).sum(), f"largest {away.max(initial=0.0):.3f} of the tolerance"
+    print(f"  {len(away)} instances of contours compared, {beyond} beyond; {largest}")
     print(f"  turn at inner joints, exact: {bends.max(initial=0.0):.1e}°")
+    print(f"  extrema of curvature beyond the floor: {extrema.mean():.3g} an instance of a contour")
     print(f"  CPU time, all at once against one by one: {together / apart:.2f} ({together:.1f} s)")
     if "CFF2" in font.tables():
         # Without the bounds of what is redrawn, no arc stays as the font has it.
@@ -93,18 +95,18 @@ def check(font: gs.Font, names: tuple[str, ...], options: gs.Options, rng: np.ra
         drawn(font, {each.masters.name: each for each in redrawn}, rng)
 
 
-def compare(result: MastersResult, tolerance: float, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """Distances from the source in tolerances, and turns at inner joints, of contours at random locations."""
+def compare(result: MastersResult, tolerance: float, rng: np.random.Generator) -> list[tuple[float, float, int]]:
+    """Of contours at random locations: distance from the source in tolerances, turn at inner joints, extrema beyond."""
     masters, found = result.masters, []
-    step = STEP * masters.metrics.units_per_em / 1000
-    corners = masters.grid()
+    step, corners = STEP * masters.metrics.units_per_em / 1000, masters.grid()
     for at in rng.uniform(corners.min(axis=0), corners.max(axis=0), (LOCATIONS, corners.shape[1])):
         weights = masters.weights_at(at)
         for contour in result.contours:
-            curve = contour.curve.mixed(weights).cubics()
-            a, b = sampled(curve, step), sampled(contour.source.mixed(weights).cubics(), step)
-            away = max(distances(a, b).max(), distances(b, a).max())
-            found.append((float(away / tolerance), largest_turn(curve, contour.inner, 1e-9)))
+            curve, source = contour.curve.mixed(weights).cubics(), contour.source.mixed(weights).cubics()
+            a, b = sampled(curve, step), sampled(source, step)
+            away, length = max(distances(a, b).max(), distances(b, a).max()), np.hypot(*np.diff(b, axis=0).T).sum()
+            extrema = curvature_extrema(curve, length, CORNER) - extrema_floor(source, length)[1]
+            found.append((float(away / tolerance), largest_turn(curve, contour.inner, 1e-9), max(extrema, 0)))
     return found
 
 
@@ -137,8 +139,7 @@ def drawn(font: gs.Font, redrawn: dict[str, Redrawn], rng: np.random.Generator) 
                 size = np.maximum(np.abs(before), np.abs(after))[inner]
                 jumps += int((np.abs(before - after)[inner] > np.maximum(0.1 * size, 1e-4)).sum())
                 joints += int(inner.sum())
-    share = jumps / max(joints, 1)
-    print(f"  as HarfBuzz draws it: turn {worst:.4f}° at most, jumps over 10 % {share:.2%} of {joints}")
+    print(f"  as HarfBuzz draws: turn {worst:.4f}° at most; jumps over 10 % {jumps / max(joints, 1):.2%} of {joints}")
     if summary.left:
         print(f"  left as they were: {summary.left}")
 

@@ -137,7 +137,8 @@ def pair_span(
         other: (m V, 4, 2); y, y_end: places on it.
         arc: empty, or (4,); see :func:`pair_instances`.
         coarse: search the segment for the points nearest to the other's joints; or else begin from a proportional
-            guess, and halve every pair once, so that a gap is seen between its ends.
+            guess, and halve every pair once, so that a gap is seen between its ends. Of an arc, refine nothing once a
+            pair is beyond ``enough``.
         enough: bounds up to this are not refined; nor are bounds within ``sharpness`` of a larger gap already seen.
         work, marks: of :func:`room_for`.
         found: the bound, without rounding; the largest distance seen between paired points; and its place on the
@@ -183,7 +184,7 @@ def pair_span(
                 most = min(most, slip_bound(one, two, chain, other, marks[top], arc, limit, scratch))
             if depth >= least and (most <= limit or depth >= DEEPEST or halvings >= MOST_HALVINGS):
                 if slips and most > limit:
-                    enough = np.inf
+                    enough, where = np.inf if coarse else enough, low
                 bound = max(bound, most)
                 top -= 1
                 continue

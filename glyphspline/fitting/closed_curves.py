@@ -75,19 +75,33 @@ def recorded(points: FloatArray, options: Options) -> History:
 
 @compiled
 def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:
-    """Ragged Bézier pieces (n, 4, 2) of closed cubic splines, and the same rounded to multiples of 1/unit.
+    """Ragged Bézier pieces (n, K, 4, 2) of closed cubic splines in K masters, and those rounded to multiples of 1/unit.
 
-    Knots of part k begin at ``offsets[k] + k``.
+    Args:
+        controls: (n, 2 K). knots: those of part k begin at ``offsets[k] + k``.
     """
-    pieces, written = np.empty((len(controls), 4, 2)), np.empty((len(controls), 4, 2))
+    pieces = np.empty((len(controls), controls.shape[1] // 2, 4, 2))
+    written = np.empty(pieces.shape)
     for k in range(len(offsets) - 1):
         a, b = offsets[k], offsets[k + 1]
-        spline_beziers(controls[a:b], knots[a + k : b + k + 1], True, pieces[a:b])
-    for i in range(len(pieces)):
-        for j in range(4):
-            for axis in range(2):
-                written[i, j, axis] = np.rint(pieces[i, j, axis] * unit) / unit
+        own = np.empty((b - a, 4, 2))
+        for v in range(pieces.shape[1]):
+            spline_beziers(controls[a:b, 2 * v : 2 * v + 2].copy(), knots[a + k : b + k + 1], True, own)
+            for i in range(b - a):
+                for j in range(4):
+                    for axis in range(2):
+                        pieces[a + i, v, j, axis] = own[i, j, axis]
+                        written[a + i, v, j, axis] = np.rint(own[i, j, axis] * unit) / unit
     return pieces, written
+
+
+@compiled
+def distance(points: FloatArray, i: int, j: int) -> float:
+    """The distance of vertices i and j, (n, d)."""
+    square = 0.0
+    for axis in range(points.shape[1]):
+        square += (points[j, axis] - points[i, axis]) ** 2
+    return np.sqrt(square)
 
 
 @compiled
@@ -97,7 +111,7 @@ def chords_of(points: FloatArray, ratio: float) -> tuple[FloatArray, bool]:
     chords = np.empty(n)
     for i in range(n):
         j = (i + 1) % n
-        chords[i] = np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+        chords[i] = distance(points, i, j)
     even = True
     for i in range(n):
         a, b = chords[i - 1], chords[i]
@@ -147,7 +161,7 @@ def through_polygons(
     ends = offsets_of(counts)
     controls = arrays.controls[_leading(offsets, counts)]
     knots = arrays.knots[_leading(offsets + np.arange(len(offsets)), counts + 1)]  # one more a spline
-    pieces, written = beziers(controls, knots, ends, 10.0**options.precision)
+    pieces, written = (each[:, 0] for each in beziers(controls, knots, ends, 10.0**options.precision))
     closed, arcs = np.ones(len(counts), dtype=np.bool_), Views(len(counts), found.results)
     measures = solved_columns([(found, np.arange(len(counts)))])
     if options.measure and places is not None:

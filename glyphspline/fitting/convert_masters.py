@@ -27,6 +27,7 @@ from .options import Options
 if TYPE_CHECKING:
     from .sharp.font_fit import FontCurve
     from .sharp.sharp_fit import SharpFit
+    from .smooth.smooth_fit import SmoothCurve
     from .topology import Changes
 
 DEFAULTS = Options()
@@ -213,7 +214,6 @@ class _Fits(NamedTuple):
     def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
         """Contours fitted within a share of the tolerance."""
         from ..outlines.segments import all_cubics
-        from .sharp.sharp_fit import fit_sharp
 
         which = [int(c) for c in which]
         chosen = [arrays.chosen(which) for arrays in self.outlines]
@@ -225,16 +225,24 @@ class _Fits(NamedTuple):
             looks = self.masters.weights_at(self.masters.places())
             found = fit_for_fonts(chosen, self.mixes, looks, self.options, self.tolerance, share, em)
             return [_stored(source, each, self) for source, each in zip(sources, found, strict=True)]
-        cubics = np.stack([all_cubics(arrays) for arrays in chosen])
+        cubics, near = np.stack([all_cubics(arrays) for arrays in chosen]), share * self.tolerance
         try:
-            fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, share * self.tolerance, em)
+            if self.options.corners == "smooth":
+                from .smooth.smooth_fit import fit_smooth_masters
+
+                offsets, first = chosen[0].offsets, share == SHARP_TRIES[0]
+                curves = fit_smooth_masters(cubics, offsets, self.mixes, self.options, near, first)
+                return [_closed(source, each, self) for source, each in zip(sources, curves, strict=True)]
+            from .sharp.sharp_fit import fit_sharp
+
+            fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, near, em)
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else self.numbers[which[error.contour]]
             raise
-        curves, sharp = zip(*(Contours(curve) for curve in fit.curves), strict=True), self.options.corners == "sharp"
+        in_all = zip(*(Contours(curve) for curve in fit.curves), strict=True)
         return [
-            _contour_result(source, k, fit, in_all, self.tolerance, sharp)
-            for k, (source, in_all) in enumerate(zip(sources, curves, strict=True))
+            _contour_result(source, k, fit, each, self.tolerance)
+            for k, (source, each) in enumerate(zip(sources, in_all, strict=True))
         ]
 
     def remarks(self, results: Sequence[MastersContourResult], found: Changes) -> Iterator[str]:
@@ -282,12 +290,9 @@ def check_options(options: Options) -> None:
 
 
 def _contour_result(
-    source: MasterContour, c: int, fit: SharpFit, curves: Sequence[Contour], tolerance: float, sharp: bool
+    source: MasterContour, c: int, fit: SharpFit, curves: Sequence[Contour], tolerance: float
 ) -> MastersContourResult:
-    """The result of contour c of a fit: its curve, a contour for each master, and what its pieces have measured.
-
-    Lines are meant to stay in a ``sharp`` fit only.
-    """
+    """The result of contour c of a fit: its curve, a contour for each master, and what its pieces have measured."""
     own = slice(fit.offsets[c], fit.offsets[c + 1])
     spans = fit.pieces.spans[own]
     segments = np.maximum(spans, 1)
@@ -304,24 +309,39 @@ def _contour_result(
         rate_bound=max((arc.rate_bound for arc in arcs), default=None),
         deviation_bound=bound,
         within_tolerance=bound <= tolerance,
-        kept=int(((spans == 1 if sharp else spans <= 1) & (fit.pieces.errors[own] == 0.0)).sum()),
+        kept=int(((spans == 1) & (fit.pieces.errors[own] == 0.0)).sum()),
         regular=bool(fit.regular[own].all()),
     )
 
 
-def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
-    """The result of a contour as fonts store it."""
+def _closed(source: MasterContour, found: SmoothCurve, fits: _Fits) -> MastersContourResult:
+    """The result of a contour as one closed curve, or as it is where none is within the tolerance."""
+    good = found.bound <= fits.tolerance
+    curve = found.curve if good else source
+    return MastersContourResult(
+        source, curve, np.full(len(curve), good), found.iterations if good else None,
+        found.rate_bound if good else None, found.bound if good else 0.0, True, 0 if good else len(curve),
+        _is_regular(curve, fits),
+    )  # fmt: skip
+
+
+def _is_regular(curve: MasterContour, fits: _Fits) -> bool:
+    """Whether a curve has speed everywhere, in the whole design space."""
     from ..curves.slip import regular
 
+    return bool(regular(np.einsum("vk,kmpc->mvpc", fits.mixes, curve.cubics())).all())
+
+
+def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
+    """The result of a contour as fonts store it."""
     precision, degrees = fits.options.precision, found.curves[0].degrees
     curve = MasterContour(np.stack([each.rounded(precision).points for each in found.curves]), degrees)
     cubics, given = curve.cubics(), source.cubics()
     first = found.anchors[:-1, 1].astype(np.int64) % len(source)
     same = (np.abs(cubics - given[:, first]).max(axis=(0, 2, 3)) < NO_HANDLE) & (degrees > 1)
-    every = np.einsum("vk,kmpc->mvpc", fits.mixes, cubics)
     return MastersContourResult(
         source, curve, found.inner, iterations=None, rate_bound=None, deviation_bound=found.bound,
-        within_tolerance=found.bound <= fits.tolerance, kept=int(same.sum()), regular=bool(regular(every).all()),
+        within_tolerance=found.bound <= fits.tolerance, kept=int(same.sum()), regular=_is_regular(curve, fits),
     )  # fmt: skip
 
 

@@ -33,9 +33,8 @@ RETRIES = {"plain": (0.9, 0.75), "masters": (0.9, 0.75, 0.5)}
 """Shares of the samples' tolerance for pieces that fail the certificate, of a plain outline and of masters. In the end
 the source's own segments take their place.
 
-With "best", 0.9 saves 13 segments, 0.75 six. Of two masters (169 contours, smooth and sharp) the
-retries save 481 segments from staying as the source has them, 0.9 alone 109 and 0.75 seven. The last one saves none of
-these, but those of a smooth contour of two masters that has a kink between them.
+With "best", 0.9 saves 13 segments, 0.75 six. Of the masters of 66 glyphs each of Source Sans 3, Source Serif 4 and
+Fraunces 980 of 5,993 segments stay as the source has them; without the last one, 2,040.
 """
 
 STARTS = 3
@@ -43,11 +42,4 @@ STARTS = 3
 
 The second one saves 25 segments with "best", the third one none of these; without it an oval of four masters stays
 the source's at a tolerance of 0.2 units.
-"""
-
-RESPACINGS = 4
-"""How often vertices on the outline are respaced, before spans that miss the tolerance are cut.
-
-Of 169 contours of two masters, with 9,117 segments, 206 segments stay the source's; without respacing 221, with one
-respacing 74, of 9,279 segments in 0.74 of the time.
 """

@@ -21,9 +21,11 @@ from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns
 from glyphspline.curves.pairing import pair_instances
 from glyphspline.curves.slip import regular
-from glyphspline.fitting.convert_masters import changes_at
+from glyphspline.fitting.convert_masters import MastersContourResult, changes_at
+from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
+from glyphspline.outlines.outline import Contours
 from glyphspline.readers import Font
 from glyphspline.readers.single_fonts import masters_of_fonts
 from glyphspline.runs.jobs.masters import redrawn_glyph
@@ -247,10 +249,53 @@ def test_smooth_masters_of_corners_keep_no_segment() -> None:
         assert np.abs(turns(contour.curve.mixed(np.array([1 - share, share])).cubics(), 1e-9)).max() < 1e-9
 
 
+def bends_beyond_the_floor(contour: MastersContourResult, weights: FloatArray) -> int:
+    """Extrema of curvature of an instance beyond the fewest that a smooth curve can have."""
+    ours, source = (Contours([each.mixed(weights)]).arrays for each in (contour.curve, contour.source))
+    found = geometry(ours, ours, source, np.zeros((3, 2)), np.array([0, 3]))
+    return int(found.curvature_extrema[0] - found.curvature_extrema_floor[0])
+
+
+def test_corners_of_smooth_masters_have_no_rings_in_any_instance() -> None:
+    masters = masters_of(stem(100, 60), stem(220, 120), degrees=[1, 3, 1, 1])
+    held, passed = (
+        gs.convert_masters(masters, gs.Options(corners="smooth", hold_corners=hold)).contours[0]
+        for hold in (True, False)
+    )
+    for share in np.linspace(0, 1, 5):
+        weights = np.array([1 - share, share])
+        assert bends_beyond_the_floor(held, weights) == 0
+        assert bends_beyond_the_floor(passed, weights) > 4
+        assert apart(held.curve.mixed(weights).cubics(), held.source.mixed(weights).cubics()) <= 1.01
+
+
+def test_a_corner_that_opens_in_one_master_is_rounded_in_all() -> None:
+    """A square one of whose corners is a straight joint in the other master."""
+    square = np.array([[0.0, 0.0], [400.0, 0.0], [400.0, 400.0], [0.0, 400.0]])
+    triangle = np.array([[0.0, 0.0], [400.0, 0.0], [200.0, 200.0], [0.0, 400.0]])
+    result = gs.convert_masters(masters_of(square, triangle, degrees=[1] * 4), gs.Options(corners="smooth"))
+    contour = result.contours[0]
+    assert (contour.within_tolerance, contour.kept, contour.new_crossings) == (True, 0, 0)
+    for share in np.linspace(0, 1, 5):
+        weights = np.array([1 - share, share])
+        assert apart(contour.curve.mixed(weights).cubics(), contour.source.mixed(weights).cubics()) <= 1.01
+        assert bends_beyond_the_floor(contour, weights) <= 0
+
+
+def test_smooth_masters_that_agree_need_no_more_than_one() -> None:
+    shape, options = stem(150, 80), gs.Options(corners="smooth")
+    alone, twice = (
+        gs.convert_masters(masters_of(*[shape] * k, degrees=[1, 3, 1, 1]), options).contours[0] for k in (1, 2)
+    )
+    np.testing.assert_array_equal(twice.curve.points[0], twice.curve.points[1])
+    assert len(twice.curve) <= len(alone.curve)
+    assert apart(twice.curve.cubics()[0], alone.curve.cubics()[0]) <= 1
+
+
 def test_lines_that_stay_in_a_smooth_fit_are_counted_and_said() -> None:
     """So closely no closed curve is certified, and the contour stays as it is: lines and corners too."""
     masters = masters_of(stem(100, 60), stem(220, 120), degrees=[1, 3, 1, 1])
-    result = gs.convert_masters(masters, gs.Options(corners="smooth", tolerance=0.01))
+    result = gs.convert_masters(masters, gs.Options(corners="smooth", tolerance=1e-4))
     for ours, own in zip(result.contours[0].curve.points, masters.contours[0].points, strict=True):
         assert sorted(ours.round(6).tolist()) == sorted(own.round(6).tolist())
     assert result.contours[0].kept == 4

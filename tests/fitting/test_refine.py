@@ -20,12 +20,19 @@ from glyphspline.fitting.smooth.spacing import growth_of, off_corners
 from glyphspline.interpolation.result import turned
 from glyphspline.outlines.contour_arrays import polylines
 from glyphspline.outlines.outline import Contours
+from glyphspline.outlines.segments import all_cubics
 from scripts.paper.measures import shape
 from tests.fitting.test_distance import true_distance
 from tests.places import DEJAVU
 from tests.polygons import circle_contour, overshoot, random_polygon, square_contour
 
 NONE = np.empty((0, 2))
+
+
+def canonical_of(*contours: gs.Contour) -> CanonicalContours:
+    """Contours of a plain outline as they are fitted."""
+    arrays = Contours(contours).arrays
+    return canonical_contours(all_cubics(arrays)[None], arrays.offsets)
 
 
 def wobbly(radius: float, seed: int) -> gs.Contour:
@@ -38,12 +45,12 @@ def wobbly(radius: float, seed: int) -> gs.Contour:
 @pytest.mark.parametrize("seed", range(6))
 def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     contour = wobbly(100, seed)
-    canonical = canonical_contours(Contours([contour]).arrays)
+    canonical = canonical_of(contour)
     which, near = np.zeros(1, dtype=np.int64), 0.01
     places = np.linspace(0, len(canonical.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
     found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options())
-    pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 100.0)
+    pieces, written = (each[:, 0] for each in beziers(found.arrays.controls, found.arrays.knots, offsets, 100.0))
     np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
     measured = steps.measured(canonical, which, places, offsets, found.arrays.controls, written, near)
@@ -110,7 +117,7 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
 
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
-    canonical = canonical_contours(Contours([square_contour(900), circle_contour(100)]).arrays)
+    canonical = canonical_of(square_contour(900), circle_contour(100))
     _, places, offsets = steps.first_places(
         canonical, np.radians(12), 4.0, growth_of(4.0, 2), 1.0, 2, np.zeros(2, dtype=np.bool_)
     )
@@ -182,7 +189,7 @@ def test_a_contour_run_against_its_direction_gets_the_curve_of_its_own_polygon()
     flips = set()
     for seed in range(6):
         contour = wobbly(100, seed)
-        flips.add(bool(canonical_contours(Contours([contour]).arrays).flipped[0]))
+        flips.add(bool(canonical_of(contour).flipped[0]))
         result = smoothed([contour], gs.Options(corners="smooth", hold_corners=False), 1.0)[0]
         (arc,) = result.interpolations
         plain = gs.interpolate(result.polygon, margin=0.02, residual_tolerance=0.005)

@@ -163,9 +163,7 @@ def test_what_no_cubic_is_near_is_not_taken_for_one() -> None:
     assert fit_cubic(np.zeros((5, 2)), east, (False, False), 1.0, 6, tangents) == np.inf
 
 
-SETTINGS = EFFORTS["fast"](
-    near=0.9, angle=np.radians(12.0), line=20.0, c2=True, round_corners=False, margin=0.02, residual=0.005
-)
+SETTINGS = EFFORTS["fast"](near=0.9, angle=np.radians(12.0), line=20.0, c2=True, margin=0.02, residual=0.005)
 
 
 def cut(contours: Sequence[gs.Contour]) -> tuple[Chains, Pieces]:

@@ -175,7 +175,7 @@ def _fitted(
     near = scale * share * tolerance
     settings = EFFORTS[options.effort](
         near=near, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em * scale, c2=False,
-        round_corners=False, margin=0.0, residual=0.0,
+        margin=0.0, residual=0.0,
     )  # fmt: skip
     cubics = np.stack([all_cubics(master) for master in sources])
     limits = Limits(near, em * scale, settings.chain_rounds, corners, mixes)
@@ -276,7 +276,7 @@ def quadratic_points(
         stored = stored_points(own)
         settings = EFFORTS[options.effort](
             near=tolerance if stored else tolerance / DENSER, angle=float(np.radians(options.corner_angle)),
-            line=LONG_LINE * em, c2=False, round_corners=False, margin=0.0, residual=0.0,
+            line=LONG_LINE * em, c2=False, margin=0.0, residual=0.0,
         )  # fmt: skip
         points, on, far = fit_contour_quadratics(all_cubics(own), own.degrees, settings, tolerance, stored is not None)
         if stored is None:

@@ -16,8 +16,6 @@ class Settings(NamedTuple):
         near: how near samples have to be. angle: turn in radians from which a joint is a corner.
         line: length from which lines stay lines.
         c2: whether splines are fitted, which need more samples beside tight turns; or else single cubics.
-        round_corners: whether closed curves go round corners: vertices that do not get near enough by moving are then
-            fixed on the outline.
         margin, residual: of the interpolation.
         chain_rounds: most Gauss-Newton steps of a cubic among others. cubic_rounds: most steps of a cubic by itself.
         rounds: most steps of a spline's first guess. few_rounds: of one with up to three spans.
@@ -32,7 +30,6 @@ class Settings(NamedTuple):
     angle: float
     line: float
     c2: bool
-    round_corners: bool
     margin: float
     residual: float
     chain_rounds: int

@@ -147,11 +147,9 @@ def fit_sharp(
         source: the contours' degrees and offsets. cubics: (K, m, 4, 2) their segments in each of K masters.
         mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline.
     """
-    sharp = options.corners == "sharp"  # or else no joint is hard, and every contour is one closed curve
     settings = EFFORTS[options.effort](
         near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
-        angle=float(np.radians(options.corner_angle)) if sharp else np.inf, line=LONG_LINE * em if sharp else np.inf,
-        c2=True, round_corners=not sharp, margin=float(options.margin),
+        angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=True, margin=float(options.margin),
         residual=options.solver_tolerance,
     )  # fmt: skip
     chains, pieces = fit_contours(cubics, source, settings)

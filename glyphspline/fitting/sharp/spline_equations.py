@@ -40,7 +40,6 @@ class Fit(NamedTuple):
         samples: of the stretch. near: how near all of them have to be.
         curve, trial: the curve so far, and one step further. rows, tried: of both.
         best: the curve with the fewest spans that passed.
-        goals: (room + 1,) integrals of the density up to vertices that are fixed on the outline.
         costs: (room + 1,) what taking out each vertex of ``best`` is estimated to cost; left: which ones are still to
             be tried.
         frames: (K, room + 1, 4) normal and tangent of each vertex at its footpoint.
@@ -60,7 +59,6 @@ class Fit(NamedTuple):
     best: Curve
     rows: Rows
     tried: Rows
-    goals: FloatArray
     costs: FloatArray
     left: BoolArray
     frames: FloatArray
@@ -80,7 +78,7 @@ def empty_fit(samples: Samples, near: float, settings: Settings, spans: int, clo
     return Fit(
         samples, near, settings,
         empty_curve(masters, spans, closed), empty_curve(masters, spans, closed), empty_curve(masters, spans, closed),
-        empty_rows(masters, n), empty_rows(masters, n), np.empty(slots), np.empty(slots), np.empty(slots, np.bool_),
+        empty_rows(masters, n), empty_rows(masters, n), np.empty(slots), np.empty(slots, np.bool_),
         np.empty((masters, slots, 4)), np.empty((masters, slots, 8, 8)), np.empty((masters, slots, 9, 8)),
         np.empty((2 * slots, 2 * slots)), np.empty((masters, 2 * slots)), np.empty(2 * slots, dtype=np.int64),
         np.empty(slots + 2, dtype=np.int64), np.full((masters, 2), np.nan),

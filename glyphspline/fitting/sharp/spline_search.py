@@ -42,7 +42,7 @@ from .spline_equations import (
     knots_per_step,
     objective,
 )
-from .vertices import FAR, fix_on_outline, insert_vertices, keep, measure_fixed, place_vertices, resize, samples_between
+from .vertices import insert_vertices, keep, place_vertices, resize, samples_between
 
 PATIENCE = 12
 """Insertions after a first guess from which on all spans that miss the tolerance are cut.
@@ -86,8 +86,7 @@ def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pie
     # Spans of one spline at most: what needs more stays as the source has it.
     if max(guess, begun) > min(1000, most):
         return
-    may_fix = settings.round_corners and closed > 0
-    owned = empty_fit(samples, near, settings, min((8 if may_fix else 2) * max(wanted, 4, begun) + 16, most), closed)
+    owned = empty_fit(samples, near, settings, min(2 * max(wanted, 4, begun) + 16, most), closed)
     fit = borrowed(owned)
     if begun > 0:
         at, n = pieces.starts[q], begun + 1 - closed
@@ -95,16 +94,12 @@ def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pie
         for v in range(len(samples.Q)):
             fit.curve.p[v, :n] = pieces.vertices[at : at + n, v]
         set_handles(fit.curve, pieces.tangents[q])
-    good, fixed = grow(fit, begun, guess, wanted, may_fix), 0
-    if not good and may_fix:
-        fixed = fix_on_outline(fit)
-    if good or fixed > 0:
-        if begun == 0 and (good or settings.passes > 1):
+    if grow(fit, begun, guess, wanted):
+        if begun == 0:
             remove_vertices(fit, least)
         best, k, at = fit.best, fit.best.size[0], pieces.starts[q]
         n = k + 1 - closed
-        afresh = k != fixed  # or else with its vertices on the outline
-        pieces.errors[q] = measure_afresh(fit.samples, best, fit.near, fit.rows) if afresh else measure_fixed(fit, best)
+        pieces.errors[q] = measure_afresh(fit.samples, best, fit.near, fit.rows)
         pieces.spans[q], pieces.starts[q + 1] = k, at + n
         find_places(fit.samples, best, fit.rows, pieces.places[at : at + n])
         for v in range(len(best.p)):
@@ -118,16 +113,16 @@ def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pie
 
 
 @compiled
-def grow(fit: Fit, begun: int, guess: int, wanted: int, may_fix: bool) -> bool:
+def grow(fit: Fit, begun: int, guess: int, wanted: int) -> bool:
     """Move the vertices, and add more where they miss the tolerance, until a curve passes; whether one does.
 
     Args:
         begun: spans of the curve to begin with; 0 to begin with ``guess`` spans, and then with more.
-        wanted: spans by the density. may_fix: give up soon, as vertices can be fixed on the outline.
+        wanted: spans by the density.
     """
     settings, near = fit.settings, fit.near
     last = np.inf
-    for start in range(1 if begun > 0 or may_fix else STARTS):
+    for start in range(1 if begun > 0 else STARTS):
         if start > 0:
             guess = max(wanted, guess + 2) + start - 1
         possible = begun > 0 or place_vertices(fit, guess)
@@ -138,9 +133,6 @@ def grow(fit: Fit, begun: int, guess: int, wanted: int, may_fix: bool) -> bool:
             if error <= near:
                 keep(fit)
                 return True
-            # Insertions into a closed curve that may go round corners, before its vertices are fixed on the outline.
-            if may_fix and (error > FAR * near or insertions >= 3):
-                return False
             slow = slow + 1 if error > 4 * near and error > 0.7 * last else 0
             last = error
             if error == np.inf or slow == 3:

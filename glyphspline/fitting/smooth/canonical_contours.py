@@ -8,8 +8,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import bernstein, jet, length_table, turns
-from ...outlines.contour_arrays import ContourArrays
-from ...outlines.segments import contour_cubics, farthest_joint, is_backward, lasting
+from ...outlines.segments import farthest_joint, is_backward, lasting
 from ...types import BoolArray, FloatArray, IntArray
 
 TABLE = 16
@@ -21,13 +20,15 @@ WEIGHTS = bernstein(TABLE)
 class CanonicalContours(NamedTuple):
     """The contours of a glyph in the direction in which they are fitted: a closed curve is turned back as a whole.
 
-    They begin at the joint farthest out, corner or not: such a curve ends nowhere.
+    They begin at the joint farthest out, corner or not: such a curve ends nowhere. In K masters a contour is one in
+    R^{2K}, where squares of lengths are sums of those in the masters. Direction and first joint are the first master's.
 
     Attributes:
-        cubics: (S, 4, 2) the segments of all contours; offsets: (K + 1,) where each contour begins, and S.
-        flipped: (K,) whether a contour is run against its given direction.
-        turns: (S,) angle between the tangents at the start of each segment, in radians.
-        lengths: (S TABLE + K,) length along each contour, from start to end, at even parameters of each segment.
+        cubics: (S K, 4, 2) the segments of all contours, segment j in master v in row j K + v; offsets: (C + 1,) where
+            each contour begins, in segments, and S.
+        flipped: (C,) whether a contour is run against its given direction.
+        turns: (S,) angle between the tangents at the start of each segment, in radians: the largest in any master.
+        lengths: (S TABLE + C,) length along each contour, from start to end, at even parameters of each segment.
     """
 
     cubics: FloatArray
@@ -38,28 +39,67 @@ class CanonicalContours(NamedTuple):
 
 
 @compiled
-def canonical_contours(contours: ContourArrays) -> CanonicalContours:
-    """Contours end to end as the smooth mode fits them; segments of no length are left out."""
-    count, most = len(contours.offsets) - 1, len(contours.degrees)
-    cubics, angles, lengths = np.empty((most, 4, 2)), np.empty(most), np.empty(most * TABLE + count)
+def canonical_contours(given: FloatArray, begins: IntArray) -> CanonicalContours:
+    """Contours end to end as the smooth mode fits them; segments that have a length in no master are left out.
+
+    Args:
+        given: (K, M, 4, 2) their segments in each master. begins: (C + 1,) where each contour begins.
+    """
+    K, most, count = given.shape[0], given.shape[1], len(begins) - 1
+    cubics, angles, lengths = np.empty((most * K, 4, 2)), np.zeros(most), np.empty(most * TABLE + count)
     offsets, flipped = np.zeros(count + 1, dtype=np.int64), np.empty(count, dtype=np.bool_)
     for k in range(count):
-        given = contour_cubics(contours, k)
-        kept = lasting(given)
-        at, m = offsets[k], len(kept)
-        for j in range(m):
-            for c in range(4):
-                given[j, c, 0], given[j, c, 1] = given[kept[j], c, 0], given[kept[j], c, 1]
-        chain, flipped[k] = given[:m], is_backward(given[:m])
+        lasts = np.zeros(begins[k + 1] - begins[k], dtype=np.bool_)
+        for v in range(K):
+            lasts[lasting(given[v, begins[k] : begins[k + 1]])] = True
+        kept, at = np.flatnonzero(lasts), offsets[k]
+        m = len(kept)
+        chain = np.empty((K, m, 4, 2))
+        for v in range(K):
+            for j in range(m):
+                chain[v, j] = given[v, begins[k] + kept[j]]
+        flipped[k] = is_backward(chain[0])
         if flipped[k]:
-            chain = chain[::-1, ::-1].copy()
-        first = farthest_joint(chain[:, 0])
-        own = np.concatenate((chain[first:], chain[:first]))
+            chain = chain[:, ::-1, ::-1].copy()
+        first = farthest_joint(chain[0, :, 0])
+        chain = np.concatenate((chain[:, first:], chain[:, :first]), axis=1)
         offsets[k + 1] = at + m
-        cubics[at : at + m], angles[at : at + m] = own, np.abs(turns(own, 0.0))
-        table_of(lengths, offsets, k)[:] = length_table(own, WEIGHTS)
+        table = table_of(lengths, offsets, k)
+        for v in range(K):
+            own = np.abs(turns(chain[v], 0.0))
+            for j in range(m):
+                cubics[(at + j) * K + v] = chain[v, j]
+                angles[at + j] = max(angles[at + j], own[j])
+            own = length_table(chain[v], WEIGHTS)
+            if K == 1:
+                table[:] = own
+            else:
+                for i in range(m * TABLE):
+                    square = (own[i + 1] - own[i]) ** 2
+                    table[i + 1] = square if v == 0 else table[i + 1] + square
+        if K > 1:
+            table[0] = 0.0
+            for i in range(m * TABLE):
+                table[i + 1] = table[i] + np.sqrt(table[i + 1])
     at = offsets[count]
-    return CanonicalContours(cubics[:at], offsets, flipped, angles[:at], lengths[: at * TABLE + count])
+    return CanonicalContours(cubics[: at * K], offsets, flipped, angles[:at], lengths[: at * TABLE + count])
+
+
+@compiled
+def chain_of(contours: CanonicalContours, k: int) -> FloatArray:
+    """(m K, 4, 2) the segments of contour k."""
+    K = len(contours.cubics) // len(contours.turns)
+    return contours.cubics[contours.offsets[k] * K : contours.offsets[k + 1] * K]
+
+
+@compiled
+def in_master(contours: CanonicalContours, k: int, v: int) -> tuple[FloatArray, float]:
+    """(m, 4, 2) the segments of contour k in master v, and its length there."""
+    K = len(contours.cubics) // len(contours.turns)
+    if K == 1:
+        return chain_of(contours, k), table_of(contours.lengths, contours.offsets, k)[-1]
+    own = chain_of(contours, k)[v::K].copy()
+    return own, length_table(own, WEIGHTS)[-1]
 
 
 @compiled
@@ -78,10 +118,11 @@ def length_at(lengths: FloatArray, place: float) -> float:
 
 
 @compiled
-def points_at(cubics: FloatArray, places: FloatArray) -> FloatArray:
-    """(n, 2) the points at places of a contour, all in its first lap."""
-    points = np.empty((len(places), 2))
+def points_at(cubics: FloatArray, K: int, places: FloatArray) -> FloatArray:
+    """(n, 2 K) the points at places of a contour in K masters, all in its first lap."""
+    points = np.empty((len(places), 2 * K))
     for i in range(len(places)):
         s = int(places[i])
-        points[i, 0], points[i, 1], _, _, _, _ = jet(cubics, s, places[i] - s)
+        for v in range(K):
+            points[i, 2 * v], points[i, 2 * v + 1], _, _, _, _ = jet(cubics, s * K + v, places[i] - s)
     return points

@@ -3,7 +3,7 @@
 Control points move along the curve's normals at their footpoints, which is how variant 2 moves them: from the places
 that the footpoints move to, it finds the same curve again but for small terms of second order. What is minimized is the
 total variation of curvature, each change as a share of the curvature there, by Newton steps of reweighted least
-squares; a logarithmic barrier keeps samples of the curve near the outline.
+squares; a logarithmic barrier keeps samples of the curve near the outline. Each of several masters is faired alone.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ...curves.fairness import TURN, curvatures, extrema_of
 from ...curves.nearest import near_place
 from ...types import BoolArray, FloatArray, IntArray
 from ..measures import CORNER, extrema_floor
-from .canonical_contours import TABLE, CanonicalContours, table_of
+from .canonical_contours import CanonicalContours, in_master
 
 SAMPLES = 3
 """Samples of curvature and distance in a span."""
@@ -54,48 +54,47 @@ BAND = 9
 
 
 @compiled
-def floors(contours: CanonicalContours, which: IntArray) -> IntArray:
-    """The fewest extrema of curvature of C2 curves near the contours; see :class:`..results.Measures`."""
-    found = np.empty(len(which), dtype=np.int64)
+def floors(contours: CanonicalContours, which: IntArray) -> tuple[IntArray, FloatArray]:
+    """(k, K) the fewest extrema of curvature of C2 curves near contours in each master, see
+    :class:`..results.Measures`; and their lengths."""
+    K = len(contours.cubics) // len(contours.turns)
+    found, lengths = np.empty((len(which), K), dtype=np.int64), np.empty((len(which), K))
     for i in range(len(which)):
-        k = which[i]
-        outline = contours.cubics[contours.offsets[k] : contours.offsets[k + 1]]
-        _, found[i] = extrema_floor(outline, table_of(contours.lengths, contours.offsets, k)[-1])
-    return found
+        for v in range(K):
+            outline, lengths[i, v] = in_master(contours, which[i], v)
+            _, found[i, v] = extrema_floor(outline, lengths[i, v])
+    return found, lengths
 
 
 @compiled
-def bends(
-    contours: CanonicalContours, which: IntArray, offsets: IntArray, pieces: FloatArray
-) -> tuple[IntArray, FloatArray]:
-    """(k,) extrema of curvature of ragged curves, and (n,) the largest curvature of each span."""
-    extrema, peaks = np.empty(len(which), dtype=np.int64), np.zeros(len(pieces))
-    for i in range(len(which)):
-        length = table_of(contours.lengths, contours.offsets, which[i])[-1]
-        curve = pieces[offsets[i] : offsets[i + 1]]
-        values, where, n = curvatures(curve, length, CORNER)
-        extrema[i] = extrema_of(values, n, TURN / length)
-        for j in range(n):
-            span = offsets[i] + min(int(where[j]), len(curve) - 1)
-            peaks[span] = max(peaks[span], abs(values[j]))
+def bends(lengths: FloatArray, offsets: IntArray, pieces: FloatArray) -> tuple[IntArray, FloatArray]:
+    """(k, K) extrema of curvature of ragged curves, and (n, K) the largest curvature of each span.
+
+    Args:
+        lengths: (k, K) of the contours. pieces: (n, K, 4, 2).
+    """
+    extrema, peaks = np.empty(lengths.shape, dtype=np.int64), np.zeros(pieces.shape[:2])
+    for i in range(len(lengths)):
+        for v in range(lengths.shape[1]):
+            curve = pieces[offsets[i] : offsets[i + 1], v].copy()
+            values, where, n = curvatures(curve, lengths[i, v], CORNER)
+            extrema[i, v] = extrema_of(values, n, TURN / lengths[i, v])
+            for j in range(n):
+                span = offsets[i] + min(int(where[j]), len(curve) - 1)
+                peaks[span, v] = max(peaks[span, v], abs(values[j]))
     return extrema, peaks
-
-
-def first_limits(
-    contours: CanonicalContours, which: IntArray, offsets: IntArray, peaks: FloatArray, near: float
-) -> FloatArray:
-    """Ragged limits of :func:`faired` to begin with, from the peaks of spans: what is straight stays."""
-    straight = STRAIGHT / contours.lengths[contours.offsets[which + 1] * TABLE + which]
-    return np.where(peaks > np.repeat(straight, np.diff(offsets)), LIMIT * near, 0.0)
 
 
 @compiled
 def lowered(
     limits: FloatArray, offsets: IntArray, bounds: FloatArray, near: float, peaks: FloatArray, most: FloatArray
 ) -> FloatArray:
-    """Ragged limits, lower in the spans whose bounds are too large, and in those beside them.
+    """Ragged limits (n, K), lower in the spans whose bounds are too large, and in those beside them.
 
     They are 0, and nothing moves, where a span misses again, or its peak is above that allowed for its contour.
+
+    Args:
+        bounds: (n,). peaks: (n, K). most: (k, K) those allowed.
     """
     after = limits.copy()
     for i in range(len(offsets) - 1):
@@ -103,10 +102,11 @@ def lowered(
         for j in range(n):
             for c in range(-1, 2):
                 at = a + (j + c) % n
-                if peaks[a + j] > most[i] or (bounds[a + j] > near and limits[at] < LIMIT * near):
-                    after[at] = 0.0
-                elif bounds[a + j] > near:
-                    after[at] = min(after[at], CUT * near / bounds[a + j] * limits[at])
+                for v in range(limits.shape[1]):
+                    if peaks[a + j, v] > most[i, v] or (bounds[a + j] > near and limits[at, v] < LIMIT * near):
+                        after[at, v] = 0.0
+                    elif bounds[a + j] > near:
+                        after[at, v] = min(after[at, v], CUT * near / bounds[a + j] * limits[at, v])
     return after
 
 
@@ -116,31 +116,35 @@ def faired(
     ends: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
     limits: FloatArray, near: float, some: BoolArray,
 ) -> FloatArray:  # fmt: skip
-    """New vertices (n, 2) of the contours that are among ``some``; those of held control points stay.
+    """New vertices (n, 2 K) of the contours that are among ``some``; those of held control points stay.
 
     Args:
         which: (k,) contours, with ragged vertices: places on the outline, points, ends of spans on it (see
             :class:`.steps.Trial`), Bézier pieces, knots, footpoints' parameters, and whether they are held.
-        limits: (n,) largest distance of samples of each span from the outline; 0 where nothing moves.
+        limits: (n, K) largest distance of samples of each span from the outline; 0 where nothing moves.
         near: the distance allowed, in font units.
     """
     moved = points.copy()
     for i in range(len(which)):
-        a, b, k = offsets[i], offsets[i + 1], which[i]
-        if some[i]:
+        a, b = offsets[i], offsets[i + 1]
+        for v in range(pieces.shape[1] if some[i] else 0):
+            own = points[a:b, 2 * v : 2 * v + 2].copy()
+            outline, _ = in_master(contours, which[i], v)
             _fair(
-                contours.cubics[contours.offsets[k] : contours.offsets[k + 1]], pieces[a:b], knots[a + i : b + i + 1],
-                parameters[a:b], held[a:b], ends[a + i : b + i + 1], limits[a:b], near, moved[a:b],
+                outline, pieces[a:b, v].copy(), knots[a + i : b + i + 1], parameters[a:b], held[a:b],
+                ends[a + i : b + i + 1], limits[a:b, v].copy(), near, np.sqrt(pieces.shape[1]), own,
             )  # fmt: skip
+            if np.isfinite(own).all():  # or else the curve has no speed somewhere, as where a contour collapses
+                moved[a:b, 2 * v : 2 * v + 2] = own
     return moved
 
 
 @compiled
 def _fair(
     outline: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
-    ends: FloatArray, limits: FloatArray, near: float, points: FloatArray,
+    ends: FloatArray, limits: FloatArray, near: float, unit: float, points: FloatArray,
 ) -> None:  # fmt: skip
-    """Write the new vertices of one contour."""
+    """Write the new vertices of one contour in one master; ``unit``: of the knots, about, in font units."""
     n = len(pieces)
     m, length, basis = n * SAMPLES, knots[n] - knots[0], _span_basis(knots)
     spans, local, normals = np.empty(n, dtype=np.int64), np.empty(n), np.zeros((n + 3, 2))
@@ -177,7 +181,7 @@ def _fair(
                 slopes[s, c] = value * (nx * ex + ny * ey)
     moves, delta, weight = np.zeros(n + 3), np.zeros(n + 3), BARRIER
     for _ in range(STEPS):
-        band, right = _equations(jets, first, second, away, most, slopes, moving, FLAT / length, near, weight)
+        band, right = _equations(jets, first, second, away, most, slopes, moving, FLAT * unit / length, near, weight)
         _solve(band, right)
         for c in range(n + 3):
             delta[c] = right[_folded((c - 1) % n, n)]

@@ -1,5 +1,7 @@
 """The smooth mode: one closed C2 curve for each contour, within a tolerance, for all contours of a batch at once.
 
+The K masters of a contour are one curve in R^{2K}, with vertices at the same places of all of them.
+
 Each round interpolates the unfinished contours in one compiled call, measures the curves as they are written, and where
 a span misses the tolerance lays vertices anew, more and evenly, between the corners beside it. A contour that still
 misses it after some rounds gets vertices where it does. The measure is the certificate: a contour that passes is
@@ -19,6 +21,8 @@ from ...errors import GlyphsplineError
 from ...interpolation.batch import NONE_HELD
 from ...interpolation.result import BatchedInterpolation, Interpolation, reversed_interpolation, turned
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
+from ...outlines.masters import MasterContour
+from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..closed_curves import beziers, interpolated
 from ..faithful import Fits
@@ -27,7 +31,7 @@ from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours
 from . import fairing, steps
-from .canonical_contours import CanonicalContours, canonical_contours
+from .canonical_contours import canonical_contours, chain_of
 from .spacing import growth_of
 
 ROUNDS = 80
@@ -48,19 +52,43 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
         share, early = SMOOTH_TRIES[attempt]
-        hold = options.hold_corners and attempt == 0
-        search = _Search(canonical_contours(contours), options, share * tolerance, hold)
-        # One round also removes vertices that seem unnecessary. Those beside held corners do not grow fewer by it.
-        search.refine(int(not hold) if early is None else early)
-        if missed := [k for k, found in search.kept.items() if search.hold[k] and not search.passes(found)]:
-            search.hold[missed] = False
-            search.refine(1 if early is None else early, missed)
-        search.thin()
-        if options.hold_corners and attempt < TRY_APART:  # there strands lie too near to each other
-            search.fair()
+        search = _Search(all_cubics(contours)[None], contours.offsets, None, options, share * tolerance)
+        # When contours are drawn apart strands lie too near to each other to be faired.
+        search.search(attempt == 0, early, attempt < TRY_APART)
         return search.converted(contours, tolerance)
 
     return Fits(len(SMOOTH_TRIES), fit, apart=TRY_APART)
+
+
+class SmoothCurve(NamedTuple):
+    """A contour's curve in all masters.
+
+    Attributes:
+        bound: certified distance from the source in the whole design space. iterations, rate_bound: of variant 2.
+    """
+
+    curve: MasterContour
+    bound: float
+    iterations: int
+    rate_bound: float
+
+
+def fit_smooth_masters(
+    cubics: FloatArray, offsets: IntArray, mixes: FloatArray, options: Options, near: float, first: bool
+) -> list[SmoothCurve]:
+    """Closed C2 curves for the masters of C contours.
+
+    Args:
+        cubics: (K, m, 4, 2) their segments in each master. offsets: (C + 1,) where each contour begins.
+        mixes: (V, K) weights of the masters at the corners of the design space's grid.
+        near: the distance allowed, in font units. first: whether this is the contours' first fit.
+
+    Raises:
+        GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
+    """
+    search = _Search(cubics, offsets, mixes, options, near)
+    search.search(first, SMOOTH_TRIES[0 if first else 1][1], True)
+    return [search.in_masters(k) for k in range(len(offsets) - 1)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +97,8 @@ class Round:
 
     Attributes:
         trial: the polygons, and the distances of the curves as written from the outline.
-        found: the curves through the polygons. pieces: ragged (n, 4, 2), the curves as Béziers; written: the same,
-            rounded as they are written.
+        found: the curves through the polygons. pieces: ragged (n, K, 4, 2), the curves as Béziers; written: (n, V,
+            4, 2), plain ones rounded as they are written, those of masters in the instances that are measured.
         held: ragged, the vertices whose control points stay at them; () where none does.
         most: (k,) the largest bound of each contour.
     """
@@ -116,20 +144,50 @@ class Gathered(NamedTuple):
         return cls(offsets_of([len(part) for part in columns[0]]), *map(np.concatenate, columns))
 
 
+def _mixed(mixes: FloatArray, cubics: FloatArray) -> FloatArray:
+    """Cubics in V instances, (n, V, 4, 2), from those in the masters, (n, K, 4, 2)."""
+    return np.ascontiguousarray(np.einsum("vk,nkpc->nvpc", mixes, cubics))
+
+
 class _Search:
     """The search for the vertices of a glyph's contours.
 
     Attributes:
-        near: the distance allowed, in font units. hold: (K,) whether control points of corners are held at them.
+        contours: in all masters. mixes: (V, K) weights of the masters in the instances that are measured, and
+            instances: the contours in these; None for plain outlines.
+        near: the distance allowed, in font units. hold: (C,) whether control points of corners are held at them.
         kept: by contour, a round and which part of it: that with the fewest vertices that passed; if none did, that
             with the smallest bound.
     """
 
-    def __init__(self, contours: CanonicalContours, options: Options, near: float, hold: bool) -> None:
-        self.contours, self.options, self.near = contours, options, near
-        self.hold = np.full(len(contours.flipped), hold)
+    def __init__(
+        self, cubics: FloatArray, offsets: IntArray, mixes: FloatArray | None, options: Options, near: float
+    ) -> None:
+        self.contours = self.instances = canonical_contours(cubics, offsets)
+        self.mixes, self.options, self.near = mixes, options, near
+        if mixes is not None:
+            every = self.contours.cubics.reshape(-1, len(cubics), 4, 2)
+            self.instances = self.contours._replace(cubics=_mixed(mixes, every).reshape(-1, 4, 2))
+        self.hold = np.zeros(len(self.contours.flipped), dtype=np.bool_)
         self.angle = float(np.radians(options.corner_angle))
         self.kept: dict[int, tuple[Round, int]] = {}
+
+    def search(self, first: bool, early: int | None, fair: bool) -> None:
+        """Search for the curves of all contours.
+
+        Args:
+            first: whether this is their first fit: corners are held in it, if the options say so.
+            early: rounds that also remove vertices; None for the usual number. fair: whether to fair the curves.
+        """
+        self.hold[:] = first and self.options.hold_corners
+        # One round also removes vertices that seem unnecessary. Those beside held corners do not grow fewer by it.
+        self.refine(int(not self.hold.any()) if early is None else early)
+        if missed := [k for k, found in self.kept.items() if self.hold[k] and not self.passes(found)]:
+            self.hold[missed] = False
+            self.refine(1 if early is None else early, missed)
+        self.thin()
+        if self.options.hold_corners and fair:
+            self.fair()
 
     def refine(self, early: int, again: Sequence[int] = ()) -> None:
         """Start from vertices spaced by the outline; add and remove vertices until all contours pass.
@@ -188,24 +246,28 @@ class _Search:
         if len(which) == 0:
             return
         before = Gathered.of([self.kept[k] for k in which.tolist()])
-        floors = fairing.floors(self.contours, which)
-        extrema, peaks = fairing.bends(self.contours, which, before.offsets, before.pieces)
+        counts = np.diff(before.offsets)
+        floors, lengths = fairing.floors(self.contours, which)
+        extrema, peaks = fairing.bends(lengths, before.offsets, before.pieces)
         most = fairing.PEAK * np.maximum.reduceat(peaks, before.offsets[:-1])
-        some = (extrema > floors) & (np.diff(before.offsets) >= fairing.FEWEST)
-        limits = fairing.first_limits(self.contours, which, before.offsets, peaks, self.near)
+        some = (extrema > floors).any(axis=1) & (counts >= fairing.FEWEST)
+        # What is straight stays.
+        straight = fairing.STRAIGHT / np.repeat(lengths, counts, axis=0)
+        limits = np.where(peaks > straight, fairing.LIMIT * self.near, 0.0)
         for _ in range(fairing.TRIES):
             if not some.any():
                 break
             points = fairing.faired(self.contours, which, *before, limits, self.near, some)
-            rows, left = np.repeat(some, np.diff(before.offsets)), np.flatnonzero(some)
-            offsets = offsets_of(np.diff(before.offsets)[left])
+            rows, left = np.repeat(some, counts), np.flatnonzero(some)
+            offsets = offsets_of(counts[left])
             done = self.run(which[left], before.places[rows], offsets, points[rows])
             if len(done.pieces) < offsets[-1]:  # vertices fell together
                 break
-            count, peaks = fairing.bends(self.contours, which[left], offsets, done.pieces)
-            good = (done.most <= self.near) & (np.maximum.reduceat(peaks, offsets[:-1]) <= most[left])
+            count, peaks = fairing.bends(lengths[left], offsets, done.pieces)
+            good = (done.most <= self.near) & (np.maximum.reduceat(peaks, offsets[:-1]) <= most[left]).all(axis=1)
             some[left[good]] = False
-            for n in np.flatnonzero(good & (count < extrema[left]) & (done.found.arrays.rates < 1)).tolist():
+            fewer = count.sum(axis=1) < extrema[left].sum(axis=1)
+            for n in np.flatnonzero(good & fewer & (done.found.arrays.rates < 1)).tolist():
                 self.kept[int(which[left[n]])] = done, n
             limits[rows] = fairing.lowered(limits[rows], offsets, done.trial.bounds, self.near, peaks, most[left])
 
@@ -233,7 +295,8 @@ class _Search:
             kept = np.concatenate(parts)
             return self.run(which, places[kept], offsets_of([len(part) for part in parts]), points[kept])
         pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 10.0**self.options.precision)
-        trial = steps.measured(self.contours, which, places, offsets, points, written, self.near)
+        written = written if self.mixes is None else _mixed(self.mixes, pieces)
+        trial = steps.measured(self.instances, which, places, offsets, points, written.reshape(-1, 4, 2), self.near)
         return Round(trial, found, pieces, written, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
 
     def passes(self, found: tuple[Round, int]) -> bool:
@@ -252,7 +315,7 @@ class _Search:
         flipped = self.contours.flipped.tolist()
         kept = [self.kept[k] for k in range(len(flipped))]
         points = [found.part(found.trial.points, i) for found, i in kept]
-        pieces = [found.part(found.pieces, i) for found, i in kept]
+        pieces = [found.part(found.pieces, i)[:, 0] for found, i in kept]
         for n, (found, i) in enumerate(kept):
             held = found.part(found.held, i) if len(found.held) else found.held
             if held.any():  # the vertex is where the curve passes by
@@ -278,10 +341,19 @@ class _Search:
             solved | distance_columns(gaps, bounds, tolerance),
         )
 
+    def in_masters(self, k: int) -> SmoothCurve:
+        """The curve kept for contour k, in the given direction."""
+        found, i = self.kept[k]
+        cubics, arrays = found.part(found.pieces, i).swapaxes(0, 1), found.found.arrays
+        if self.contours.flipped[k]:
+            cubics = cubics[:, ::-1, ::-1]
+        curve = MasterContour(cubics[:, :, :3].reshape(len(cubics), -1, 2), np.full(cubics.shape[1], 3))
+        return SmoothCurve(curve, float(found.most[i]), int(arrays.whole[i, 2]), float(arrays.rates[i]))
+
     def certificate(self, k: int, tolerance: float) -> tuple[float, float]:
         """Certified bound, and distance seen, of the curve kept for contour k."""
         (found, i), trial = self.kept[k], self.kept[k][0].trial
-        written, outline = found.part(found.written, i), self.contours.cubics[slice(*self.contours.offsets[k : k + 2])]
+        written, outline = found.part(found.written, i)[:, 0], chain_of(self.contours, k)
         ends = trial.ends[trial.offsets[i] + i : trial.offsets[i + 1] + i + 1]
         spans = found.part(trial.bounds, i), found.part(trial.gaps, i)
         bound, gap = steps.sharpened(written, outline, *spans, ends, SHARPNESS * tolerance)

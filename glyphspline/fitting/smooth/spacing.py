@@ -12,6 +12,9 @@ model outline:
 Away from its bounds the field grows by ``log(growth)`` a unit of length: consecutive chords along such a field grow
 by the factor ``growth``. Vertices lie at all corners and, between two, where the integral of 1/field is whole.
 
+Of several masters the field is in lengths of the curve in R^{2K}, as share of which each asks for lengths of its own,
+and the least counts.
+
 Where spans fail the field is lowered, and the stretches between corners in which one does are respaced. A vertex put
 into a span would leave chords of half the length beside whole ones, which the curve answers with a wobble, which fails
 in turn: a round letter took twice the vertices, with a curvature extremum at each.
@@ -22,10 +25,10 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import jet
+from ...curves.cubics import jet, length, length_table
 from ...types import BoolArray, FloatArray, IntArray
 from ..closed_curves import chords_of
-from .canonical_contours import TABLE, length_at, points_at
+from .canonical_contours import TABLE, WEIGHTS, length_at, points_at
 
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
 """The three numbers, with something to spare at corners, where a span that just fails costs a vertex."""
@@ -68,52 +71,60 @@ def first_field(
     """Write the field of a contour, at all entries of ``lengths`` in turn.
 
     Args:
-        cubics: (m, 4, 2). lengths, turns: see :class:`.canonical_contours.CanonicalContours`.
+        cubics: (m K, 4, 2). lengths, turns: see :class:`.canonical_contours.CanonicalContours`.
         corner_angle: turn in radians from which a joint is a vertex. factor: by which chords grow at most.
         near: distance allowed, in font units. hold: whether control points of corners are held at them.
         field: (m TABLE + 1,).
     """
     at_corner = AT_CORNER_3 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
-    m = len(cubics)
-    curvature = np.empty((m, TABLE + 1))
+    m = len(turns)
+    K, steps = len(cubics) // m, m * TABLE
+    curvature, scale = np.empty((m, TABLE + 1)), np.ones(steps)
     field[:] = lengths[-1] / FEWEST
-    for j in range(m):
-        kappa, s = curvature[j], lengths[j * TABLE : (j + 1) * TABLE + 1]
-        ax, ay = cubics[j, 3, 0] - cubics[j, 0, 0], cubics[j, 3, 1] - cubics[j, 0, 1]
-        off = 0.0
-        for k in range(1, 3):
-            off = max(off, abs(ax * (cubics[j, k, 1] - cubics[j, 0, 1]) - ay * (cubics[j, k, 0] - cubics[j, 0, 0])))
-        straight = off <= 1e-9 * (ax * ax + ay * ay)
-        for k in range(TABLE + 1):
-            kappa[k] = 0.0
-            if not straight:
-                _, _, dx, dy, bx, by = jet(cubics, j, k / TABLE)
-                speed = np.sqrt(dx * dx + dy * dy)
-                kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
-        for k in range(0 if straight else TABLE + 1):
-            c = min(max(k, 1), TABLE - 1)
-            before, after = s[c] - s[c - 1], s[c + 1] - s[c]
-            change = 0.0
-            if before > 0 and after > 0:
-                slope = (kappa[c + 1] - kappa[c]) / after - (kappa[c] - kappa[c - 1]) / before
-                change = 2 * abs(slope) / (before + after)
-            bend = abs(kappa[k])
-            h = (near / (AT_CURVATURE * (change + bend**3) + 1e-300)) ** 0.25
-            if bend > 0:
-                h = min(h, BEND / bend)
-            at = j * TABLE + k
-            field[at] = min(field[at], max(h, near))
-    for j in range(m):
-        # Corners count as if the sine of their angle were at least this.
-        if hold and turns[j] >= corner_angle:
-            h = first / AT_HELD * near / max(np.sin(turns[j] / 2), 0.1)
-        else:
-            h = first / at_corner * near / max(np.sin(turns[j]), 0.1) if turns[j] > 0.01 else np.inf
-        jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
-        if jump > 0:
-            h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))
-        field[j * TABLE] = min(field[j * TABLE], h)
+    for v in range(K):
+        own = cubics[v::K].copy() if K > 1 else cubics
+        table = length_table(own, WEIGHTS) if K > 1 else lengths
+        for i in range(steps if K > 1 else 0):  # lengths in R^{2K} by those in this master
+            step = table[i + 1] - table[i]
+            scale[i] = (lengths[i + 1] - lengths[i]) / step if step > 0 else np.inf
+        for j in range(m):
+            kappa, s = curvature[j], table[j * TABLE : (j + 1) * TABLE + 1]
+            ax, ay = own[j, 3, 0] - own[j, 0, 0], own[j, 3, 1] - own[j, 0, 1]
+            off = 0.0
+            for k in range(1, 3):
+                off = max(off, abs(ax * (own[j, k, 1] - own[j, 0, 1]) - ay * (own[j, k, 0] - own[j, 0, 0])))
+            straight = off <= 1e-9 * (ax * ax + ay * ay)
+            for k in range(TABLE + 1):
+                kappa[k] = 0.0
+                if not straight:
+                    _, _, dx, dy, bx, by = jet(own, j, k / TABLE)
+                    speed = np.sqrt(dx * dx + dy * dy)
+                    kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
+            for k in range(0 if straight else TABLE + 1):
+                c = min(max(k, 1), TABLE - 1)
+                before, after = s[c] - s[c - 1], s[c + 1] - s[c]
+                change = 0.0
+                if before > 0 and after > 0:
+                    slope = (kappa[c + 1] - kappa[c]) / after - (kappa[c] - kappa[c - 1]) / before
+                    change = 2 * abs(slope) / (before + after)
+                bend = abs(kappa[k])
+                h = (near / (AT_CURVATURE * (change + bend**3) + 1e-300)) ** 0.25
+                if bend > 0:
+                    h = min(h, BEND / bend)
+                at = j * TABLE
+                longer = min(scale[at + max(k - 1, 0)], scale[at + min(k, TABLE - 1)])
+                field[at + k] = min(field[at + k], max(h, near) * longer)
+        for j in range(m):
+            # Corners count as if the sine of their angle were at least this.
+            if hold and turns[j] >= corner_angle:
+                h = first / AT_HELD * near / max(np.sin(turns[j] / 2), 0.1)
+            else:
+                h = first / at_corner * near / max(np.sin(turns[j]), 0.1) if turns[j] > 0.01 else np.inf
+            jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
+            if jump > 0:
+                h = min(h, max(np.sqrt(near / (AT_JUMP * jump)), near))
+            field[j * TABLE] = min(field[j * TABLE], h * min(scale[j * TABLE - 1], scale[j * TABLE]))
     corners = at_corners(np.arange(m).astype(np.float64), turns, corner_angle)
     for k in range(len(corners)):
         a, b = corners[k], corners[(k + 1) % len(corners)]
@@ -192,7 +203,7 @@ def off_corners(points: FloatArray, corners: IntArray, turns: FloatArray) -> Flo
     """(n,) about how far off the curve will be in the spans beside corners whose control points are held at them.
 
     Args:
-        points: (n, 2) vertices. corners: (k,) those at corners; turns: (k,) there, in radians.
+        points: (n, 2 K) vertices. corners: (k,) those at corners; turns: (k,) there, in radians.
     """
     n = len(points)
     chords, _ = chords_of(points, 1.0)
@@ -200,11 +211,14 @@ def off_corners(points: FloatArray, corners: IntArray, turns: FloatArray) -> Flo
     for k in range(len(corners)):
         i = corners[k]
         c, d, e, f = chords[i - 2], chords[i - 1], chords[i], chords[(i + 1) % n]
-        # How far the two control points beside the corner draw the curve, which are about a chord away from it.
-        a, b = NEAR_HELD * e * e * d / ((d + e) * (c + d + e)), NEAR_HELD * d * d * e / ((d + e) * (d + e + f))
-        errors[i - 1] = errors[i] = max(
-            np.sqrt(a * a + b * b - 2 * a * b * np.cos(turns[k])), max(errors[i - 1], errors[i])
-        )
+        for v in range(0, points.shape[1], 2):
+            x, y = points[:, v], points[:, v + 1]
+            g, h = length(x[i] - x[i - 1], y[i] - y[i - 1]), length(x[(i + 1) % n] - x[i], y[(i + 1) % n] - y[i])
+            # How far the two control points beside the corner draw the curve, which are about a chord away from it.
+            a, b = NEAR_HELD * e * e * g / ((d + e) * (c + d + e)), NEAR_HELD * d * d * h / ((d + e) * (d + e + f))
+            errors[i - 1] = errors[i] = max(
+                np.sqrt(a * a + b * b - 2 * a * b * np.cos(turns[k])), max(errors[i - 1], errors[i])
+            )
     return errors
 
 
@@ -324,9 +338,10 @@ def graded(cubics: FloatArray, lengths: FloatArray, places: FloatArray, ratio: f
 
     Up to a ratio of 4 this certifies convergence before the interpolation is run (Theorem 2).
     """
+    K = len(cubics) * TABLE // (len(lengths) - 1)
     while True:
         n = len(places)
-        chords, even = chords_of(points_at(cubics, places), ratio)
+        chords, even = chords_of(points_at(cubics, K, places), ratio)
         if n > MOST or even:
             return places
         at, h = spans_of(lengths, places)

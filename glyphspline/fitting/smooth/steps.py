@@ -16,7 +16,8 @@ from ...curves.cubics import extent
 from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
 from ...types import BoolArray, FloatArray, IntArray
-from .canonical_contours import TABLE, CanonicalContours, points_at, table_of
+from ..closed_curves import distance
+from .canonical_contours import TABLE, CanonicalContours, chain_of, points_at, table_of
 from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, off_corners, spans_after, with_more
 
 
@@ -27,11 +28,11 @@ def first_places(
 ) -> tuple[FloatArray, FloatArray, IntArray]:  # fmt: skip
     """The fields of all contours end to end, and ragged places to begin with."""
     count = len(contours.offsets) - 1
-    fields = np.empty(len(contours.cubics) * TABLE + count)
+    fields, K = np.empty(len(contours.turns) * TABLE + count), len(contours.cubics) // len(contours.turns)
     offsets, values = np.zeros(count + 1, dtype=np.int64), np.empty(1024)
     for k in range(count):
         a, b = contours.offsets[k], contours.offsets[k + 1]
-        cubics, turns = contours.cubics[a:b], contours.turns[a:b]
+        cubics, turns = chain_of(contours, k), contours.turns[a:b]
         lengths = table_of(contours.lengths, contours.offsets, k)
         field, joints = table_of(fields, contours.offsets, k), np.arange(b - a).astype(np.float64)
         first_field(cubics, lengths, turns, corner_angle, factor, near, variant, hold[k], field)
@@ -39,7 +40,7 @@ def first_places(
         even = laid(field, lengths, joints, corners, np.ones(len(corners), dtype=np.bool_))
         if hold[k] and turns[corners[0]] >= corner_angle:
             corners = at_corners(even, turns, corner_angle)
-            errors = off_corners(points_at(cubics, even), corners, turns[even[corners].astype(np.int64)])
+            errors = off_corners(points_at(cubics, K, even), corners, turns[even[corners].astype(np.int64)])
             fails = failed(corners, errors, near)
             lowered(field, lengths, even, corners, fails, errors, near, np.log(factor), True)
             even = laid(field, lengths, even, corners, fails)
@@ -70,11 +71,12 @@ def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
 
 @compiled
 def polygons(contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray) -> FloatArray:
-    """Ragged points (n, 2) of the outline at the places."""
-    points = np.empty((len(places), 2))
+    """Ragged points (n, 2 K) of the outline at the places."""
+    K = len(contours.cubics) // len(contours.turns)
+    points = np.empty((len(places), 2 * K))
     for i in range(len(which)):
-        cubics = contours.cubics[contours.offsets[which[i]] : contours.offsets[which[i] + 1]]
-        points[offsets[i] : offsets[i + 1]] = points_at(cubics, places[offsets[i] : offsets[i + 1]])
+        a, b = offsets[i], offsets[i + 1]
+        points[a:b] = points_at(chain_of(contours, which[i]), K, places[a:b])
     return points
 
 
@@ -83,7 +85,8 @@ class Trial(NamedTuple):
 
     Attributes:
         which: (k,) numbers of the contours. places, offsets, points: the vertices.
-        bounds, gaps, worst: certified bounds of the spans, gaps seen, and the places of these on the outline.
+        bounds, gaps, worst: certified bounds of the spans, gaps seen, and the places of these on the outline. In
+            several instances no gaps are seen, and are the bounds.
         ends: where the stretch of outline that a span is paired with begins; those of part i begin at
             ``offsets[i] + i``, and the first is repeated a lap later.
     """
@@ -108,25 +111,27 @@ def measured(
     A span is paired with the stretch of outline between the points nearest to its ends.
 
     Args:
-        pieces: (n, 4, 2) the curves as they are written. near: the distance allowed.
+        contours: in V instances. pieces: (n V, 4, 2) the curves as they are written. near: the distance allowed.
     """
-    n, no_arc, (work, marks, found) = len(places), np.empty(0), room_for(1)
+    n, V, arc = len(places), len(contours.cubics) // len(contours.turns), np.empty(0)
+    if V > 1:
+        arc = np.array([-np.inf, np.inf, -np.inf, np.inf])
+    work, marks, found = room_for(V)
     bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
     for i in range(len(which)):
         a, b = offsets[i], offsets[i + 1]
-        outline, spans = contours.cubics[contours.offsets[which[i]] : contours.offsets[which[i] + 1]], pieces[a:b]
+        outline, spans = chain_of(contours, which[i]), pieces[a * V : b * V]
         begins, rounding = ends[a + i : b + i + 1], ROUNDING * max(extent(spans), extent(outline))
-        near_places(1, outline, places[a:b], spans, True, 0.0, 0.0, begins)
-        begins[b - a] = begins[0] + len(outline)
+        near_places(V, outline, places[a:b], spans, True, 0.0, 0.0, begins)
+        begins[b - a] = begins[0] + len(outline) // V
         for j in range(b - a):
             y, y_end = begins[j], begins[j + 1]
             found[0], found[1], found[2] = 0.0, 0.0, (y + y_end) / 2
             pair_span(
                 # Sharpness of the bounds during the search, as a share of the distance allowed.
-                1, spans, j, 0.0, 1.0, outline, y, y_end, no_arc, False, near - rounding, 0.1 * near, work, marks,
-                found,
+                V, spans, j, 0.0, 1.0, outline, y, y_end, arc, False, near - rounding, 0.1 * near, work, marks, found,
             )  # fmt: skip
-            bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1], found[2]
+            bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1 if V == 1 else 0], found[2]
     return Trial(which, places, offsets, points, bounds, gaps, worst, ends)
 
 
@@ -174,8 +179,7 @@ def changed(
     growth = np.log(factor)
     for i in range(len(which)):
         k, a, b = which[i], offsets[i], offsets[i + 1]
-        s, t = contours.offsets[k], contours.offsets[k + 1]
-        cubics, turns = contours.cubics[s:t], contours.turns[s:t]
+        cubics, turns = chain_of(contours, k), contours.turns[contours.offsets[k] : contours.offsets[k + 1]]
         lengths = table_of(contours.lengths, contours.offsets, k)
         here, bound, at = places[a:b].copy(), bounds[a:b].copy(), worst[a:b].copy()
         if fewer[k]:
@@ -228,14 +232,9 @@ class Good(NamedTuple):
 
 @compiled
 def thinned(
-    contours: CanonicalContours,
-    near: float,
-    hold: BoolArray,
-    corner_angle: float,
-    ratio: float,
-    trial: Trial,
+    contours: CanonicalContours, near: float, hold: BoolArray, corner_angle: float, ratio: float, trial: Trial,
     good: Good,
-) -> tuple[IntArray, FloatArray, IntArray]:
+) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours that are not finished, and their next places, to find the vertices that are needed.
 
     A trial that passes replaces the good polygon, and the next trial omits vertices of it that seem unnecessary. If a
@@ -268,17 +267,9 @@ def thinned(
             turns = contours.turns[contours.offsets[k] : contours.offsets[k + 1]]
             # Optimistic: the error grows with the length alone, as each trial is measured.
             keep[:] = sparse(
-                good.points[c:d],
-                good.places[c:d],
-                turns,
-                corner_angle,
-                hold[k],
-                needed,
-                good.gaps[c:d],
-                near,
-                ratio,
+                good.points[c:d], good.places[c:d], turns, corner_angle, hold[k], needed, good.gaps[c:d], near, ratio,
                 1.0,
-            )
+            )  # fmt: skip
         if not keep.all():
             here = good.places[c:d][keep]
             values = appended(values, new[count], here)
@@ -299,7 +290,7 @@ def sparse(
     is at least its height over the chord that takes its place. At a held corner it grows with the chord beside it.
 
     Args:
-        points: (n, 2), at places (n,). turns: at the joints; from ``corner_angle`` a joint is a corner.
+        points: (n, d), at places (n,). turns: at the joints; from ``corner_angle`` a joint is a corner.
         hold: whether control points of corners are held at them.
         needed: (n,) vertices that are kept in any case. errors: (n,) of the span after each vertex.
     """
@@ -312,18 +303,22 @@ def sparse(
         if needed[i]:
             continue
         k = (i + 1) % n
-        h, g = chord(points, i - 1, i), chord(points, i, k)
+        h, g = distance(points, i - 1, i), distance(points, i, k)
         expected[i] = max(errors[i - 1], errors[i]) * ((g + h) / max(g, h)) ** power
         if hold and corner[i - 1]:
             expected[i] = max(expected[i], errors[i - 1] * (g + h) / h)
         if hold and corner[k]:
             expected[i] = max(expected[i], errors[i] * (g + h) / g)
         if corner[i]:
-            ax, ay = points[k, 0] - points[i - 1, 0], points[k, 1] - points[i - 1, 1]
-            bx, by = points[i, 0] - points[i - 1, 0], points[i, 1] - points[i - 1, 1]
-            square = ax * ax + ay * ay
-            along = min(max((ax * bx + ay * by) / square, 0.0), 1.0) if square > 0 else 0.0
-            expected[i] = max(expected[i], np.sqrt((bx - along * ax) ** 2 + (by - along * ay) ** 2))
+            square = product = height = 0.0
+            for axis in range(points.shape[1]):
+                a = points[k, axis] - points[i - 1, axis]
+                square, product = square + a * a, product + a * (points[i, axis] - points[i - 1, axis])
+            along = min(max(product / square, 0.0), 1.0) if square > 0 else 0.0
+            for axis in range(points.shape[1]):
+                b = points[i, axis] - points[i - 1, axis]
+                height += (b - along * (points[k, axis] - points[i - 1, axis])) ** 2
+            expected[i] = max(expected[i], np.sqrt(height))
     order, left = ascending(expected), n
     for k in range(n):
         i = order[k]
@@ -337,7 +332,7 @@ def sparse(
             further = (further - 1) % n
         while not keep[beyond]:
             beyond = (beyond + 1) % n
-        h, g, f = chord(points, further, before), chord(points, before, after), chord(points, after, beyond)
+        h, g, f = distance(points, further, before), distance(points, before, after), distance(points, after, beyond)
         if max(h, g) <= ratio * min(h, g) and max(f, g) <= ratio * min(f, g):
             keep[i] = False
             left -= 1
@@ -345,17 +340,11 @@ def sparse(
 
 
 @compiled
-def chord(points: FloatArray, i: int, j: int) -> float:
-    """Distance between vertices i and j."""
-    return np.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
-
-
-@compiled
 def put_back(points: FloatArray, keep: BoolArray, errors: FloatArray, near: float, ratio: float) -> BoolArray:
     """Keep again what had been taken out of the spans that are now too far off, or of those beside them.
 
     Args:
-        points: (n, 2) the polygon before. keep: (n,) the vertices of the polygon after. errors: of its spans.
+        points: (n, d) the polygon before. keep: (n,) the vertices of the polygon after. errors: of its spans.
     """
     n = len(points)
     kept = np.flatnonzero(keep)
@@ -374,8 +363,8 @@ def put_back(points: FloatArray, keep: BoolArray, errors: FloatArray, near: floa
         changed = False
         for j in range(m):
             a, b, c, d = kept[j - 1], kept[j], kept[(j + 1) % m], kept[(j + 2) % m]
-            h = chord(points, b, c)
-            if (b + 1) % n != c and h > ratio * min(chord(points, a, b), chord(points, c, d)):
+            h = distance(points, b, c)
+            if (b + 1) % n != c and h > ratio * min(distance(points, a, b), distance(points, c, d)):
                 after[(b + 1) % n] = True
                 changed = True
         if not changed:
