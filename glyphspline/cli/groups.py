@@ -145,8 +145,10 @@ def for_fonts(given: Mapping[str, Any]) -> dict[str, Any]:
     """Defaults of a run that writes only fonts and sources, unless what is given asks for other curves."""
     formats = {*filter(None, map(str.strip, str(given.get("formats", "")).split(",")))}
     formats |= {"ufo"} if given.get("in_place") or given.get("layer") is not None else set()
-    if not formats & FONTS or (not MASTERS.isdisjoint(given) and "ttf" in formats):
-        return {}  # quadratics of all masters are fitted to C2 curves
+    written = formats & FONTS
+    of_masters = not MASTERS.isdisjoint(given) and "ttf" in written
+    if not written or (of_masters and (written != {"ttf"} or "axis" in given)):
+        return {}  # quadratics beside cubics, and those of single fonts, are fitted to C2 curves
     asks = formats - FONTS or not OTHER_CURVES.isdisjoint(given) or given.get("corners", "sharp") != "sharp"
     if given.get("continuity", "c2" if asks else "g2") != "g2":
         return {}

@@ -8,7 +8,7 @@ location: see :mod:`..curves.pairing`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -78,12 +78,14 @@ class MastersResult:
     Attributes:
         masters: the source. options: how it was converted. contours: results of its contours.
         notes: what a user should know.
+        tally: (3, 2) points, kinks, and kinks between masters, before and after, of what ``glyf`` stores; else None.
     """
 
     masters: Masters
     options: Options
     contours: tuple[MastersContourResult, ...]
     notes: tuple[str, ...] = ()
+    tally: IntArray | None = None
 
     def __repr__(self) -> str:
         segments = sum(len(contour.curve) for contour in self.contours)
@@ -126,7 +128,11 @@ class MastersResult:
         return Outline(m.name, m.gid, m.unicodes, float(m.advances @ weights), contours, m.metrics, self.notes)
 
 
-def convert_masters(masters: Masters, options: Options = DEFAULTS) -> MastersResult:
+Fit = Callable[[Sequence[int], float], "list[MastersContourResult]"]
+"""Fits contours of a glyph, by their numbers in its masters, within a share of the tolerance."""
+
+
+def convert_masters(masters: Masters, options: Options = DEFAULTS, *, fit: Fit | None = None) -> MastersResult:
     """Put one curve through all masters of a glyph.
 
     Arcs end at corners and lines; with ``corners="smooth"`` it is one closed C2 curve a contour. With
@@ -134,6 +140,7 @@ def convert_masters(masters: Masters, options: Options = DEFAULTS) -> MastersRes
 
     Args:
         masters: of the glyph; see :meth:`.Source.masters`. options: how; the tolerance holds at every location.
+        fit: what fits contours, in place of cubics.
 
     Raises:
         GlyphsplineError: a contour that cannot be interpolated, or a design space with too many grid corners; it names
@@ -161,7 +168,7 @@ def convert_masters(masters: Masters, options: Options = DEFAULTS) -> MastersRes
                 raise GlyphsplineError(f"master {k}: {error.message}", contour=where) from None
         corners = masters.grid()
         mixes, which = np.unique(masters.weights_at(corners).round(12), axis=0, return_index=True)
-        fits = _Fits(masters, kept, outlines, mixes, corners[which], options)
+        fits = _Fits(masters, kept, outlines, mixes, corners[which], options, fit)
         results, found = fits.faithful()
     except GlyphsplineError as error:
         raise error.locate(glyph=masters.name) from error.__cause__
@@ -182,6 +189,7 @@ class _Fits(NamedTuple):
     mixes: FloatArray
     corners: FloatArray
     options: Options
+    fit: Fit | None
 
     @property
     def tolerance(self) -> float:
@@ -216,6 +224,8 @@ class _Fits(NamedTuple):
         from ..outlines.segments import all_cubics
 
         which = [int(c) for c in which]
+        if self.fit is not None:
+            return self.fit([self.numbers[c] for c in which], share)
         chosen = [arrays.chosen(which) for arrays in self.outlines]
         sources = [self.masters.contours[self.numbers[c]] for c in which]
         em = self.masters.metrics.units_per_em
@@ -321,15 +331,8 @@ def _closed(source: MasterContour, found: SmoothCurve, fits: _Fits) -> MastersCo
     return MastersContourResult(
         source, curve, np.full(len(curve), good), found.iterations if good else None,
         found.rate_bound if good else None, found.bound if good else 0.0, True, 0 if good else len(curve),
-        _is_regular(curve, fits),
+        is_regular(curve, fits.mixes),
     )  # fmt: skip
-
-
-def _is_regular(curve: MasterContour, fits: _Fits) -> bool:
-    """Whether a curve has speed everywhere, in the whole design space."""
-    from ..curves.slip import regular
-
-    return bool(regular(np.einsum("vk,kmpc->mvpc", fits.mixes, curve.cubics())).all())
 
 
 def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
@@ -341,8 +344,15 @@ def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersCont
     same = (np.abs(cubics - given[:, first]).max(axis=(0, 2, 3)) < NO_HANDLE) & (degrees > 1)
     return MastersContourResult(
         source, curve, found.inner, iterations=None, rate_bound=None, deviation_bound=found.bound,
-        within_tolerance=found.bound <= fits.tolerance, kept=int(same.sum()), regular=_is_regular(curve, fits),
+        within_tolerance=found.bound <= fits.tolerance, kept=int(same.sum()), regular=is_regular(curve, fits.mixes),
     )  # fmt: skip
+
+
+def is_regular(curve: MasterContour, mixes: FloatArray) -> bool:
+    """Whether a contour is proven to have speed everywhere between corners of the design space, (V, K) weights."""
+    from ..curves.slip import regular
+
+    return bool(regular(np.einsum("vk,kmpc->mvpc", mixes, curve.cubics())).all())
 
 
 def _energy(contour: Contour) -> float:

@@ -178,9 +178,14 @@ class Masters:
         return region_scalars(self.regions, at)
 
     @cached_property
+    def at_peaks(self) -> FloatArray:
+        """(K, K) the scalars at the masters."""
+        return self.scalars(self.peaks)
+
+    @cached_property
     def _inverse(self) -> FloatArray:
         """(K, K) from scalars to weights."""
-        matrix = self.scalars(self.peaks)
+        matrix = self.at_peaks
         if np.linalg.matrix_rank(matrix) < len(self):
             raise GlyphsplineError("two regions have one peak, so that masters cannot be told apart", glyph=self.name)
         return np.asarray(np.linalg.inv(matrix), dtype=np.float64)

@@ -493,7 +493,7 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
         (["--axis", "wght=400:900"], "go together"),
         (["--from", str(CFF2)], "go together"),
         (["--from", str(CFF2), "--axis", "wght=400"], "an axis is like"),
-        (["--continuity", "g2", "--format", "ttf"], "fitted to curves"),
+        (["--continuity", "g2", "--format", "ttf,otf"], "beside otf"),
     ],
 )
 def test_options_that_clash_with_masters_are_refused(more: list[str], said: str, tmp_path: Path) -> None:

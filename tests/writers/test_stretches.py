@@ -26,6 +26,8 @@ from glyphspline.readers import Font
 from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.writers.font.font_file import replace_family
 from glyphspline.writers.font.master_deltas import Redrawn
+from glyphspline.writers.font.other_outlines import to_other_outlines
+from glyphspline.writers.font.quadratic_masters import quadratic_masters
 from glyphspline.writers.font.stretches import ranges_of
 from glyphspline.writers.font.variable_font import VariableSummary, to_variable_font
 from tests.places import FONTS
@@ -121,6 +123,44 @@ def test_no_kink_that_the_source_has_not(tmp_path: Path) -> None:
     assert made > 0, "the curves by themselves do kink"
     assert anew > 3
     assert fewer > 3
+
+
+def test_quadratics_of_all_masters_follow_the_source_itself(tmp_path: Path) -> None:
+    fewer, retreats = 0, 0
+    for seed in range(8):
+        font = drawn_font(tmp_path, seed)
+        masters = font.masters("n")
+        found = quadratic_masters(font, masters, Options(corners="sharp", continuity="g2", tolerance=TOLERANCE))
+        result, summary = written(font, {"n": redrawn_glyph(found)})
+        assert found.tally is not None
+        assert all(contour.deviation_bound <= TOLERANCE for contour in found.contours)
+        assert new_kinks(masters, result.masters("n")) == 0
+        assert points_of(result, "n") <= points_of(font, "n")
+        retreats += len(summary.left)
+        for stored in summary.glyphs.values():
+            assert found.tally[0].tolist() == [points_of(font, "n"), points_of(result, "n")]
+            assert stored.tally is not None
+            assert stored.tally.points == (points_of(font, "n"), points_of(result, "n"))
+            fewer += points_of(result, "n") < points_of(font, "n")
+        for curve, drawn in zip([c.curve for c in found.contours], result.masters("n").contours, strict=True):
+            assert curve.cubics() == pytest.approx(drawn.cubics(), abs=1e-6)
+    assert fewer > 5
+    assert retreats < 3
+
+
+def test_cubics_of_all_masters_become_quadratics_without_a_new_kink(tmp_path: Path) -> None:
+    for seed in range(4):
+        data, _ = to_other_outlines(drawn_font(tmp_path, seed), {}, "otf", tolerance=TOLERANCE, rest=TOLERANCE)
+        font, out = tmp_path / "cubic.otf", tmp_path / f"out{seed}"
+        font.write_bytes(data)
+        call = ["convert", str(font), "--masters", "--all", "--format", "ttf", "--jobs", "0", "--out", str(out)]
+        assert CliRunner().invoke(app, call).exit_code == 0
+        (file,) = out.glob("*.ttf")
+        source, result = open_font(font).masters("n"), open_font(file).masters("n")
+        assert new_kinks(source, result) == 0
+        manifest = [json.loads(line) for line in (out / "manifest.jsonl").read_text().splitlines()]
+        (stored,) = [line["stored"] for line in manifest if line["glyph"] == "n"]
+        assert stored["within_tolerance"]
 
 
 def test_a_cff2_glyph_has_no_more_segments(tmp_path: Path) -> None:

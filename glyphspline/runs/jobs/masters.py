@@ -30,7 +30,7 @@ from ...report import FOLDER as GALLERY
 from ...report.data import FULL, along_axes, glyph_text, plain
 from ...types import MadeOnDemand, counted, listed, rounded_up
 from ...writers.font.font_glyphs import Flavour
-from ...writers.font.master_deltas import Redrawn, StoredGlyph, bound_of
+from ...writers.font.master_deltas import Redrawn, StoredGlyph, Tally, bound_of
 from ...writers.formats import OURS
 from ..engine import Job, Observer, reason
 from ..folder import Done, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
@@ -74,7 +74,15 @@ class MastersJob(Job[Task, list[Done]]):
         from ...fitting.convert_masters import convert_masters
 
         (task,) = tasks
-        result = convert_masters(self._masters(task), self.options)
+        masters = self._masters(task)
+        if in_quadratics(self.spec):
+            from ...writers.font.quadratic_masters import quadratic_masters
+
+            (font,) = sources(*self.places)
+            assert isinstance(font, Font)
+            result = quadratic_masters(font, masters, self.options)
+        else:
+            result = convert_masters(masters, self.options)
         names = self.spec.folders if result.contours else (RESULTS,)
         files = {name: f"{name}/{task.stem}{suffix_of(name)}" for name in names}
         entry = {
@@ -136,6 +144,11 @@ class MastersJob(Job[Task, list[Done]]):
         return found
 
 
+def in_quadratics(spec: RunSpec) -> bool:
+    """Whether glyphs are fitted with quadratics, as ``glyf`` stores them."""
+    return spec.options.is_for_fonts and "ttf" in spec.formats
+
+
 _encoded = json.JSONEncoder(ensure_ascii=False).encode
 
 
@@ -184,9 +197,11 @@ def convert_font_masters(
     began, first = time.perf_counter(), sources[0]
     _check(sources, spec, axis)
     if axis is None and "ttf" in spec.formats and isinstance(first, Font):  # its composites stay composites
-        from ...writers.font.variable_font import components
+        from ...writers.font.variable_font import components, flavour_of
 
         wanted = list(dict.fromkeys([*glyphs, *components(first, tuple(glyphs))]))
+        if in_quadratics(spec) and flavour_of(first) != "ttf":
+            wanted = list(first.glyph_names)  # they all become quadratics
     else:
         wanted = list(glyphs)
     summary = MastersSummary()
@@ -196,7 +211,7 @@ def convert_font_masters(
         record = read_record(out)
         write_run(out, run)
         options = spec.options
-        if "ttf" in spec.formats:
+        if "ttf" in spec.formats and not in_quadratics(spec):
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         job = MastersJob(tuple(map(place_of, sources)), axis, out.absolute(), options, spec)
         finished = record.finished()
@@ -225,8 +240,8 @@ def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
     if unknown := [name for name in given if name not in FORMATS]:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     check_options(spec.options)
-    if "ttf" in given and spec.options.is_for_fonts:
-        raise GlyphsplineError('quadratics of all masters are fitted to curves of continuity "c2"')
+    if in_quadratics(spec) and (axis is not None or not isinstance(font, Font) or {"otf", "ufo"} & {*given}):
+        raise GlyphsplineError('beside otf and ufo, and of single fonts, ttf is made of curves of continuity "c2"')
     if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
         check_back(font, spec)
     if axis is not None:
@@ -275,6 +290,7 @@ def redrawn_glyph(result: MastersResult) -> Redrawn:
     return Redrawn(
         result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours),
         tuple(c.deviation_bound for c in contours), tuple(numbers), result.options.corners == "sharp",
+        None if result.tally is None else Tally(*map(tuple, result.tally.tolist())),
     )  # fmt: skip
 
 

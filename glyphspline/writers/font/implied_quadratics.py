@@ -12,15 +12,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from operator import attrgetter
+from typing import NamedTuple
 
 import numpy as np
 
 from ...curves.bezier import cross, evaluate
+from ...curves.nearest import near_places
+from ...curves.pairing import pair_instances
 from ...types import BoolArray, FloatArray, IntArray
 
-TANGENT = 0.1
-"""Weight of an error along the curve against one across it. Larger: control points cannot move to where few of them
-suffice. Smaller: nothing spaces them evenly."""
+TANGENTS = (0.1, 0.4)
+"""Weights of an error along the curve against one across it. Larger: control points cannot move to where few of them
+suffice. Smaller: nothing spaces them evenly, and masters that do so unlike each other have no certificate: the second
+is for these."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +33,14 @@ class Arc:
     """What is fitted.
 
     Attributes:
-        cubics: (K, m, 4, 2) in the masters. closed: whether the arc is a whole contour without ends.
+        cubics: (K, m, 4, 2) in the masters, which the distance is measured from.
+        closed: whether the arc is a whole contour without ends.
         ends: (K, 2, 2) where it begins and ends, already rounded; not read if closed.
         straight: whether it is a line, which needs no fit.
         leaving, arriving: (K, 2) the lines before and after it, pointing into the arc, where it is to begin and end
             along them; else None.
-        source: (K, s, 4, 2) what the distance is measured from, if that is not ``cubics``.
-        first, last: (K, 2) its first and last control points where they are to be the source's; else None.
+        first, last: (K, 2) its first and last control points where they are known; else None.
+        count: how many control points these were made for; with more or less of them they would be elsewhere.
     """
 
     cubics: FloatArray
@@ -43,23 +49,16 @@ class Arc:
     straight: bool = False
     leaving: FloatArray | None = None
     arriving: FloatArray | None = None
-    source: FloatArray | None = None
     first: FloatArray | None = None
     last: FloatArray | None = None
+    count: int | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Fitted:
-    """The control points of an arc: (K, n, 2) rounded, without its ends.
-
-    Also their largest distance from the source, their shortest leg at an implied point at any location, and near which
-    (n,) places of the source the quadratics begin, counted in its cubics.
-    """
+class Fitted(NamedTuple):
+    """The control points of an arc: (K, n, 2) rounded, without its ends; and their certified distance from it."""
 
     controls: FloatArray
     distance: float
-    shortest: float
-    places: FloatArray
 
 
 def fit(
@@ -71,8 +70,8 @@ def fit(
     Their number is doubled until they are within the tolerance, and then halved down to the least that is.
 
     Args:
-        weights: (V, K) of the masters at the locations where the distance is measured.
-        tolerance: in font units.
+        weights: (V, K) of the masters at the corners of the design space's grid.
+        tolerance: in font units, at every location.
         rounded: control points (K, n, 2) as they are stored, from those wanted and a metric (K, 2n, 2n) of their error.
         most: control points allowed; if even these are too few, None is returned.
     """
@@ -80,19 +79,24 @@ def fit(
     limit = fitting.most if most is None else min(most, fitting.most)
     if limit < fitting.least:
         return None
+    source = chain_of(weights, arc.cubics)
     found: list[Fitted] = []
 
     def near(count: int) -> bool:
-        controls, metric, t = fitting.solve(count)
-        controls = rounded(controls, metric)
-        mixed = np.einsum("vk,knc->vnc", weights, controls)
-        legs = np.diff(np.concatenate([mixed, mixed[:, :1]], axis=1) if arc.closed else mixed, axis=1)
-        shortest = float(np.hypot(legs[..., 0], legs[..., 1]).min(initial=np.inf) / 2)
-        far, places = fitting.distance(controls, t, weights)
-        found.append(Fitted(controls, far, shortest, places))
+        for tangent in TANGENTS:
+            controls, metric, t = fitting.solve(count, tangent)
+            if most is not None and fitting.off(controls, t) > tolerance:
+                return False
+            controls = rounded(controls, metric)
+            found.append(Fitted(controls, fitting.distance(controls, t, weights, source, tolerance)))
+            if found[-1].distance <= tolerance or fitting.off(controls, t) > tolerance:
+                break
         return found[-1].distance <= tolerance
 
-    low, count = fitting.least - 1, fitting.least
+    if arc.count is not None:
+        any(near(count) for count in (arc.count, arc.count + 1, max(arc.count - 1, fitting.least)))
+        return min(found, key=attrgetter("distance"))
+    low, count = fitting.least - 1, fitting.least if most is None else limit
     while not (enough := near(count)) and count < limit:
         low, count = count, min(2 * count, limit)
     if not enough and most is not None:
@@ -101,6 +105,21 @@ def fit(
         middle = (low + count) // 2
         low, count = (low, middle) if near(middle) else (middle, count)
     return min(found, key=lambda each: (max(each.distance, tolerance), each.controls.shape[1]))
+
+
+def chain_of(weights: FloatArray, cubics: FloatArray) -> FloatArray:
+    """(m V, 4, 2) cubics (K, m, 4, 2) with each of (V, K) weights, those of one segment together."""
+    mixed = np.tensordot(weights, cubics, axes=1)
+    return np.ascontiguousarray(np.swapaxes(mixed, 0, 1)).reshape(-1, 4, 2)
+
+
+def as_cubics(ends: FloatArray, controls: FloatArray, closed: bool) -> FloatArray:
+    """(K, n, 4, 2) the quadratics of control points (K, n, 2), which meet midway between them."""
+    before = np.roll(controls, 1, axis=1) if closed else controls[:, :-1]
+    nodes = (before + (controls if closed else controls[:, 1:])) / 2
+    nodes = around(nodes) if closed else np.concatenate([ends[:, :1], nodes, ends[:, 1:]], axis=1)
+    a, b = nodes[:, :-1], nodes[:, 1:]
+    return np.stack([a, a + (controls - a) * (2 / 3), b + (controls - b) * (2 / 3), b], axis=2)
 
 
 class _Fitting:
@@ -117,22 +136,22 @@ class _Fitting:
         # Spans are short where the arc turns, and none is much longer than its neighbours.
         density = np.sqrt(turn / max(turn.sum(), 1e-9) * share) + 0.1 * share
         self.places = np.concatenate([[0.0], np.cumsum(density / density.sum())])
-        self.shares = np.concatenate([[0.0], np.cumsum(share)])  # of the length, at the samples
-        self._targets: tuple[FloatArray, FloatArray] | None = None
         mass = lengths if arc.closed else np.append(lengths, 0.0) + np.append(0.0, lengths)
-        normals = np.stack([-tangents[..., 1], tangents[..., 0]], axis=-1)
-        across = normals[..., :, None] * normals[..., None, :]
-        self.metric = (TANGENT**2 * np.eye(2) + (1 - TANGENT**2) * across) * (mass / mass.sum())[:, None, None]
-        bound = 4 if arc.closed else 1 + sum(each is not None for each in (arc.first, arc.last))
+        self.normals = normals = np.stack([-tangents[..., 1], tangents[..., 0]], axis=-1)
+        self.across = normals[..., :, None] * normals[..., None, :]
+        self.mass = (mass / mass.sum())[:, None, None]
+        bound = 4 if arc.closed else max(1, sum(each is not None for each in (arc.first, arc.last)))
         if arc.leaving is not None and arc.arriving is not None:
             bound = max(bound, 2)
         self.least = max(bound, int(np.ceil(turns.sum(axis=1).max() / np.radians(60))))
         self.most = max(self.least, self.points.shape[1] // 3)
 
-    def solve(self, count: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    def solve(self, count: int, tangent: float) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Control points (K, n, 2) without the ends, the quadratic form of their error (K, 2n, 2n), and the (N,)
-        parameters 0 … n of the samples."""
+        parameters 0 … n of the samples, with the weight of errors along the curve."""
         closed = self.arc.closed
+        self.metric = (tangent**2 * np.eye(2) + (1 - tangent**2) * self.across) * self.mass
+        self.pull = (self.metric @ self.points[..., None])[..., 0]
         t = count * (self.places[:-1] if closed else self.places)
         for _ in range(4):  # the parameters, which all masters share, step towards the footpoints of the samples
             controls, form = self._least_squares(t, count)
@@ -155,8 +174,9 @@ class _Fitting:
         arc, masters = self.arc, len(self.points)
         weight, _ = basis(t, count, arc.closed)
         n = weight.shape[1]
-        form = np.einsum("ia,ib,kicd->kacbd", weight, weight, self.metric, optimize=True)
-        right = np.einsum("ia,kicd,kid->kac", weight, self.metric, self.points, optimize=True)
+        pairs = (weight[:, :, None] * weight[:, None, :]).reshape(len(weight), -1)
+        form = np.tensordot(pairs, self.metric, axes=(0, 1)).reshape(n, n, masters, 2, 2).transpose(2, 0, 3, 1, 4)
+        right = np.tensordot(weight, self.pull, axes=(0, 1)).transpose(1, 0, 2)
         second = 2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1)
         if arc.closed:
             second[-1, 0] = second[0, -1] = -1
@@ -191,58 +211,43 @@ class _Fitting:
         lines = ((1, arc.leaving, arc.first, 0), (n - 2, arc.arriving, arc.last, 1))
         return [(j, line, arc.ends[:, side]) for j, line, fixed, side in lines if line is not None and fixed is None]
 
-    def targets(self, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """(V, N, 2) samples of the source at locations (V, K), and the (N,) places at which they are, ascending.
+    def off(self, controls: FloatArray, t: FloatArray) -> float:
+        """The largest distance of samples from the quadratics across these, in any master."""
+        whole = controls if self.arc.closed else np.concatenate(
+            [self.arc.ends[:, :1], controls, self.arc.ends[:, 1:]], axis=1
+        )  # fmt: skip
+        weight, _ = basis(t, controls.shape[1], self.arc.closed)
+        return float(np.abs(((weight @ whole - self.points) * self.normals).sum(axis=2)).max())
 
-        Of a closed curve the first is near where the cubics begin.
+    def distance(
+        self, controls: FloatArray, t: FloatArray, weights: FloatArray, source: FloatArray, tolerance: float
+    ) -> float:
+        """A bound of the distance of control points from the ``source`` at every location, certified up to tolerance.
+
+        Args:
+            t: parameters of the samples. source: the arc's cubics at the corners of the grid, (V, K) ``weights``.
         """
-        if self._targets is None:
-            source, closed = self.arc.cubics if self.arc.source is None else self.arc.source, self.arc.closed
-            per = 8 * max(1, -(-20 // source.shape[1]))
-            samples = sampled(source, per, closed)[0]
-            begin = 0
-            if closed:
-                begin = int(((samples - self.arc.cubics[:, :1, 0]) ** 2).sum(axis=(0, 2)).argmin())
-                samples = np.roll(samples, -begin, axis=1)
-            self._targets = np.tensordot(weights, samples, axes=1), (begin + np.arange(samples.shape[1])) / per
-        return self._targets
-
-    def distance(self, controls: FloatArray, t: FloatArray, weights: FloatArray) -> tuple[float, FloatArray]:
-        """The largest distance from the source at locations (V, K), from samples; near which (n,) places of it the
-        quadratics begin.
-
-        Each location has its own footpoints; they run forward along the arc, so that the distance is one in both
-        directions, up to what lies between two samples.
-        """
-        arc, count, closed = self.arc, controls.shape[1], self.arc.closed
-        if not closed:
-            controls = np.concatenate([arc.ends[:, :1], controls, arc.ends[:, 1:]], axis=1)
-        targets, places = self.targets(weights)
-        mixed = np.tensordot(weights, controls, axes=1)
-        steps = np.sqrt((np.diff(around(targets) if closed else targets, axis=1) ** 2).sum(axis=2).mean(axis=0)) + 1e-9
-        shares = np.concatenate([[0.0], np.cumsum(steps / steps.sum())])[: targets.shape[1]]
-        at = np.interp(shares, self.shares, np.append(t, t[0] + count) if closed else t)
-        at = np.broadcast_to(at, targets.shape[:2])
-        for _ in range(4):
-            points, slope = at_parameters(mixed, at, count, closed)
-            move = ((targets - points) * slope).sum(axis=2) / np.maximum((slope**2).sum(axis=2), 1e-12)
-            at = ordered(at + np.clip(move, -0.4, 0.4), count, closed)
-        far = np.linalg.norm(at_parameters(mixed, at, count, closed)[0] - targets, axis=2).max()
-        # Of the spline between these places, the distance from the chord.
-        if closed:
-            at, targets = np.c_[at, at[:, :1] + count], around(targets)
-            places = np.append(places, places[0] + (self.arc.cubics if arc.source is None else arc.source).shape[1])
-        arms = np.diff(targets, axis=1)
-        for share in (0.25, 0.5, 0.75):
-            between = (1 - share) * at[:, :-1] + share * at[:, 1:]
-            off = at_parameters(mixed, between, count, closed)[0] - targets[:, :-1]
-            x = np.clip((off * arms).sum(axis=2) / np.maximum((arms**2).sum(axis=2), 1e-12), 0, 1)
-            far = max(far, np.linalg.norm(off - x[..., None] * arms, axis=2).max())
-        middle = at.mean(axis=0)
+        arc, count, m, V = self.arc, controls.shape[1], self.arc.cubics.shape[1], len(weights)
+        result = chain_of(weights, as_cubics(arc.ends, controls, arc.closed))
+        every = np.arange(len(t)) / (len(t) / m if arc.closed else (len(t) - 1) / m)
+        if arc.closed:
+            t, every = np.concatenate([t - count, t, t + count]), np.concatenate([every - m, every, every + m])
         begins = np.arange(float(count))
-        early = begins < middle[0] if closed else np.zeros(count, dtype=bool)  # they are at the end of the lap
-        laps = early * (places[-1] - places[0])
-        return float(far), np.interp(begins + count * early, middle, places) - laps
+        places = np.interp(begins if arc.closed else begins[1:], t, every)
+        begins = result if arc.closed else result[V:]
+        if len(places):
+            near_places(V, source, places, begins, arc.closed, 0.0, float(m), places)
+        if arc.closed:
+            places += m * np.ceil(max(-places[0], 0.0) / m) - m * np.floor(max(places[0], 0.0) / m)
+        else:
+            places = np.append(0.0, places)
+        anchors = np.column_stack([np.arange(count + 1.0), np.append(places, places[0] + m)])
+        limits = np.tile((-np.inf, np.inf, -np.inf, np.inf) if arc.closed else (0.0, count, 0.0, m), (count, 1))
+        bounds, ends = np.full(count, np.nan), [np.array([0, each]) for each in (count, m, count + 1)]
+        pair_instances(
+            V, result, ends[0], source, ends[1], anchors, ends[2], limits, 0.0, tolerance, bounds, np.zeros(count)
+        )
+        return float(bounds.max())
 
 
 def _solved(form: FloatArray, right: FloatArray, whole: FloatArray, known: BoolArray) -> FloatArray:
@@ -309,13 +314,6 @@ def local_basis(t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, Fl
     slope = [-2 * first * y, 2 - 4 * x - 2 * (1 - first) * y + 2 * (1 - last) * x, 2 * last * x]
     index = span[..., None] + np.arange(3)
     return np.stack(weight, axis=-1), np.stack(slope, axis=-1), (index - 1) % count if closed else index
-
-
-def at_parameters(controls: FloatArray, t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, FloatArray]:
-    """(V, N, 2) points and derivatives of splines (V, n, 2), each at its own parameters (V, N)."""
-    weight, slope, index = local_basis(t, count, closed)
-    own = controls[np.arange(len(controls))[:, None, None], index]
-    return (weight[..., None] * own).sum(axis=2), (slope[..., None] * own).sum(axis=2)
 
 
 def basis(t: FloatArray, count: int, closed: bool) -> tuple[FloatArray, FloatArray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import floor
 from operator import itemgetter
 
 import numpy as np
@@ -11,42 +12,6 @@ from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters
 from ...types import BoolArray, FloatArray, IntArray, counted
 from .font_glyphs import LIMIT
-
-
-@dataclass(frozen=True, eq=False)
-class Redrawn:
-    """A glyph's new contours in all its masters.
-
-    Attributes:
-        masters: the glyph as the font has it. Its K masters and their regions are those of ``contours``.
-        contours: the new ones.
-        inner: for each contour (m,) whether segment j begins inside an arc, where the curve is to stay smooth; False
-            at the ends of arcs and lines.
-        bounds: for each contour its certified distance from its source. If they are given, arcs are compared with the
-            source, and stay as the font has them where the new ones would turn a joint that the source does not turn.
-        numbers: with ``bounds``, for each contour that of its source in ``masters``.
-        fewest: with ``bounds``, arcs also stay as they are where new ones would need more points.
-
-    Raises:
-        ValueError: the numbers of masters, contours or segments do not agree.
-    """
-
-    masters: Masters
-    contours: tuple[MasterContour, ...]
-    inner: tuple[BoolArray, ...]
-    bounds: tuple[float, ...] = ()
-    numbers: tuple[int, ...] = ()
-    fewest: bool = False
-
-    def __post_init__(self) -> None:
-        if len(self.contours) != len(self.inner):
-            raise ValueError(f"{counted(len(self.contours), 'contour')}, but joints of {len(self.inner)}")
-        if self.bounds and not len(self.bounds) == len(self.numbers) == len(self.contours):
-            raise ValueError(f"{counted(len(self.contours), 'contour')}, but bounds of {len(self.bounds)}")
-        for contour, inner in zip(self.contours, self.inner, strict=True):
-            points, degrees = contour.points, contour.degrees
-            if points.shape != (len(self.masters), int(degrees.sum()), 2) or inner.shape != degrees.shape:
-                raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
 
 
 @dataclass(frozen=True)
@@ -70,6 +35,45 @@ class Tally:
         )
         a, b, c, d, e, f = (one + two for one, two in pairs)
         return Tally((a, b), (c, d), (e, f))
+
+
+@dataclass(frozen=True, eq=False)
+class Redrawn:
+    """A glyph's new contours in all its masters.
+
+    Attributes:
+        masters: the glyph as the font has it. Its K masters and their regions are those of ``contours``.
+        contours: the new ones.
+        inner: for each contour (m,) whether segment j begins inside an arc, where the curve is to stay smooth; False
+            at the ends of arcs and lines.
+        bounds: for each contour its certified distance from its source. If they are given, arcs are compared with the
+            source, and stay as the font has them where the new ones would turn a joint that the source does not turn.
+        numbers: with ``bounds``, for each contour that of its source in ``masters``.
+        fewest: with ``bounds``, arcs also stay as they are where new ones would need more points.
+        tally: of contours that are as ``glyf`` stores them: quadratics, those at ``inner`` joints beginning midway
+            between control points; or the source's own. Else None.
+
+    Raises:
+        ValueError: the numbers of masters, contours or segments do not agree.
+    """
+
+    masters: Masters
+    contours: tuple[MasterContour, ...]
+    inner: tuple[BoolArray, ...]
+    bounds: tuple[float, ...] = ()
+    numbers: tuple[int, ...] = ()
+    fewest: bool = False
+    tally: Tally | None = None
+
+    def __post_init__(self) -> None:
+        if len(self.contours) != len(self.inner):
+            raise ValueError(f"{counted(len(self.contours), 'contour')}, but joints of {len(self.inner)}")
+        if self.bounds and not len(self.bounds) == len(self.numbers) == len(self.contours):
+            raise ValueError(f"{counted(len(self.contours), 'contour')}, but bounds of {len(self.bounds)}")
+        for contour, inner in zip(self.contours, self.inner, strict=True):
+            points, degrees = contour.points, contour.degrees
+            if points.shape != (len(self.masters), int(degrees.sum()), 2) or inner.shape != degrees.shape:
+                raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,20 +117,21 @@ def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: Flo
     With a ``metric`` (K, 2N, 2N), the quadratic form of a master's error, it is that form which is kept small, and
     points may be farther away, and no two in a row are rounded to one place: see :func:`nearest_whole`.
     """
-    scalars = masters.scalars(masters.peaks)
-    exact = np.einsum("kj,jnc->knc", np.linalg.inv(scalars), points * float(parts))
-    steps = exact.copy()  # of the masters still to come: as they are before rounding
-    waiting = list(range(len(masters)))
-    while waiting:
-        depends = [float(np.abs(scalars[k, [j for j in waiting if j != k]]).sum()) for k in waiting]
-        k = waiting.pop(int(np.argmin(depends)))
-        rest = np.arange(len(masters)) != k
-        left = points[k] * parts - np.einsum("j,jnc->nc", scalars[k, rest], steps[rest])
+    scalars, wanted = masters.at_peaks, points * float(parts)
+    # Of the masters still to come: as they are before rounding.
+    steps = np.tensordot(np.linalg.inv(scalars), wanted, axes=1)
+    others = np.abs(scalars) * (1 - np.eye(len(masters)))
+    waiting = np.arange(len(masters))
+    while len(waiting):
+        first = int(others[np.ix_(waiting, waiting)].sum(axis=1).argmin())
+        k, waiting = waiting[first], np.delete(waiting, first)
+        acting = np.flatnonzero(others[k])
+        left = wanted[k] - np.tensordot(scalars[k, acting], steps[acting], axes=1)
         if metric is None:
             steps[k] = rounded_whole(left)
         else:
             found = nearest_whole(left, metric[k])
-            steps[k] = left + kept_apart(found - left, points[k] * parts)
+            steps[k] = left + kept_apart(found - left, wanted[k])
     return np.rint(steps).astype(np.int64)
 
 
@@ -155,28 +160,29 @@ def nearest_whole(points: FloatArray, metric: FloatArray) -> FloatArray:
     Babai's nearest plane: each coordinate is rounded to where, given those rounded before, the form is least; x or y
     first, whichever ends lower.
     """
-    size = points.size
-    found = []
-    for order in (np.arange(size), np.arange(size) ^ 1):
-        wanted = points.ravel()[order]
-        whole = _nearest_plane(wanted, metric[np.ix_(order, order)])
+    found, form = [], metric.reshape(*points.shape, *points.shape)
+    for order in (1, -1):
+        wanted, own = points[:, ::order].ravel(), form[:, ::order, :, ::order].reshape(metric.shape)
+        whole = _nearest_plane(wanted, own)
         off = whole - wanted
-        found.append((float(off @ metric[np.ix_(order, order)] @ off), whole[order]))
-    return min(found, key=itemgetter(0))[1].reshape(points.shape)
+        found.append((float(off @ own @ off), whole.reshape(points.shape)[:, ::order]))
+    return min(found, key=itemgetter(0))[1]
 
 
 def _nearest_plane(wanted: FloatArray, metric: FloatArray) -> FloatArray:
     upper = np.linalg.cholesky(metric).T
     upper = upper / np.diag(upper)[:, None]
-    found = wanted.copy()
+    found, off = wanted.tolist(), np.zeros(len(wanted))
     for i in range(len(wanted) - 1, -1, -1):
-        found[i] = rounded_whole(wanted[i] + upper[i, i + 1 :] @ (wanted[i + 1 :] - found[i + 1 :]))
-    return found
+        value = found[i]
+        found[i] = floor(round(value + float(upper[i, i + 1 :] @ off[i + 1 :]), 6) + 0.5)
+        off[i] = value - found[i]
+    return np.array(found, dtype=np.float64)
 
 
 def as_drawn(masters: Masters, steps: IntArray, parts: int) -> FloatArray:
     """(K, N, 2) the points of the masters that :func:`rounded_deltas` in steps of 1/``parts`` give."""
-    drawn: FloatArray = np.einsum("kj,jnc->knc", masters.scalars(masters.peaks), steps / float(parts))
+    drawn: FloatArray = np.tensordot(masters.at_peaks, steps / float(parts), axes=1)
     return drawn
 
 

@@ -1,7 +1,8 @@
 """A variable font with outlines of the other kind: CFF2 as glyf with gvar, or glyf as CFF2, at every location.
 
 Outlines alone are others, and hints gone: axes, names, advances, kerning and features stay. Composites become simple
-glyphs. Quadratics are raised exactly; cubics become quadratics as in any written font.
+glyphs. Quadratics are raised exactly. Cubics become quadratics by :mod:`.quadratic_masters` in runs for fonts; else,
+and where no glyph was fitted so, here.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ from fontTools.ttLib.tables._g_l_y_f import Glyph
 from fontTools.varLib.builder import buildVarData, buildVarRegionList, buildVarStore
 from fontTools.varLib.hvar import add_HVAR
 
-from ...checks.turns import joint_controls, turns_of
 from ...curves.integrals import area
 from ...errors import GlyphsplineError
 from ...outlines.masters import Masters
@@ -31,11 +31,8 @@ from .font_file import HINTS, become
 from .font_glyphs import Flavour
 from .master_deltas import Redrawn, bound_of, region_key
 from .new_variable_font import add_advances, opened
+from .quadratic_masters import unchanged
 from .variable_font import VariableSummary, to_variable_font
-
-SMOOTH = 1.0
-"""Degrees of turn in the worst master up to which two curves are one arc of quadratics, which turns nowhere. Ends of
-arcs are rounded, and kink by that where handles are short."""
 
 log = logging.getLogger("glyphspline")
 
@@ -60,6 +57,12 @@ def to_other_outlines(
     near = tolerance if flavour == "otf" else rest
     with reusing(source.path, source.kind):
         empty = blank(source, masters, flavour)
+    if any(new.tally for new in redrawn.values()):  # then all are as they are stored
+        for name in source.glyph_names:
+            if name not in redrawn and masters[name].contours:
+                log.warning("%s, glyph %r: not fitted: left empty in the written font", source.path, name)
+        drawn = MadeOnDemand(dict.fromkeys(redrawn), lambda name: oriented(redrawn[name], flavour))
+        return to_variable_font(empty, drawn, flavour, family=family, with_contours=with_contours)
     plain, kept = to_variable_font(empty, as_is, flavour, tolerance=near, with_contours=False)
     for name, reason in kept.left.items():
         log.warning("%s, glyph %r: %s: left empty in the written font", source.path, name, reason)
@@ -87,22 +90,12 @@ def _masters(source: Font, name: str, said: set[str]) -> Masters:
         return Masters(name, axes=source.axes, regions=np.empty((0, len(source.axes), 3)), metrics=source.metrics)
 
 
-def unchanged(masters: Masters) -> Redrawn:
-    """A glyph as it is. Curves that meet smoothly in all masters are to stay smooth."""
-    contours, inner = tuple(masters.contours), []
-    for contour in contours:
-        turns = np.nan_to_num(np.abs(turns_of(joint_controls(contour))), nan=180.0).max(axis=0)
-        curved = contour.degrees > 1
-        inner.append((turns < SMOOTH) & curved & np.roll(curved, 1))
-    return Redrawn(masters, contours, tuple(inner))
-
-
 def oriented(new: Redrawn, flavour: Flavour) -> Redrawn:
     """The glyph with ink to the right of its contours in the default, as TrueType has it, or to their left.
 
     Quadratics are not compared with the source's, which are cubics: their bounds are none.
     """
-    if flavour == "ttf":
+    if flavour == "ttf" and new.tally is None:
         new = Redrawn(new.masters, new.contours, new.inner)
     total = sum(area(contour.cubics()[0]) for contour in new.contours)
     if (total >= 0) == (flavour == "otf") or total == 0:

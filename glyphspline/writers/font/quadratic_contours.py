@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from fontTools.ttLib.tables._g_l_y_f import Glyph, flagOnCurve
 from fontTools.ttLib.tables.TupleVariation import TupleVariation
 from fontTools.varLib.iup import iup_delta
 
+from ...checks.kinds import THRESHOLDS
+from ...checks.turns import joint_controls, turns_of
+from ...curves.bezier import cross
 from ...curves.cubics import turns
-from ...curves.nearest import near_places
-from ...curves.pairing import pair_instances
 from ...outlines.masters import MasterContour, Masters, quadratics
 from ...readers.pens import ContourPen
 from ...types import BoolArray, FloatArray, IntArray
@@ -24,9 +26,8 @@ from .stretches import NEAR, is_own, locations, ranges_of, spans_of
 LEVEL = np.radians(0.5)
 """Turn between a line and an arc up to which, if no master turns more, the arc begins along the line."""
 
-SAMPLED, CLOSER = 0.98, 0.9
-"""Shares of the tolerance for the distance seen: that which is certified is larger. Arcs that are not certified within
-the first are fitted again within the second."""
+AIMS = 6
+"""How far a control point may move along x and y so that a joint turns less, in units; further needs other legs."""
 
 PHANTOMS = 4
 """Points after those of the contours, which encode the advance and the bearings."""
@@ -53,6 +54,10 @@ class Own:
     moved: FloatArray
     turned: bool
 
+    def as_stored(self) -> tuple[IntArray, BoolArray]:
+        """Steps, and which points are on the curve, in the font's order."""
+        return np.roll(self.steps, -int(self.turned), axis=1), np.roll(self.on, -int(self.turned))
+
 
 def own_contours(
     masters: Masters, glyph: Glyph, moves: Sequence[tuple[int, TupleVariation]], shift: FloatArray
@@ -62,7 +67,7 @@ def own_contours(
     Args:
         moves: tuples of the glyph, and the numbers of their masters. shift: see :class:`Quadratic`.
     """
-    if not glyph.numberOfContours:
+    if glyph.numberOfContours < 1:
         return {}
     places = np.array(glyph.coordinates, dtype=np.float64)
     deltas = np.zeros((len(masters), *places.shape))
@@ -99,7 +104,8 @@ class Quadratic:
     """The plan of a contour in quadratics, within a tolerance if that can be had in whole units.
 
     An arc that is drawn anew has only implied points on the curve. Next to a joint that turns, its control point
-    becomes the source's, and in the end the whole arc.
+    becomes the source's, and in the end the whole arc. Where the font has no such contour, it becomes one that turns
+    less, and in the end what meets there becomes one arc, lines too: it turns nowhere.
 
     Args:
         redrawn, c: which contour. owns: contours as the font has them.
@@ -107,32 +113,44 @@ class Quadratic:
     """
 
     def __init__(self, redrawn: Redrawn, c: int, owns: Mapping[int, Own], shift: FloatArray, tolerance: float) -> None:
-        self.masters, contour, inner = redrawn.masters, redrawn.contours[c], redrawn.inner[c]
+        self.masters, self._contour, self._inner = redrawn.masters, redrawn.contours[c], redrawn.inner[c].copy()
         self._offset = shift[:, None, None] * np.array([1.0, 0.0])
-        self._weights = self.masters.weights_at(locations(self.masters))
+        self._weights = np.unique(self.masters.weights_at(self.masters.grid()).round(12), axis=0)
         self._fewest = redrawn.fewest
-        self._tolerance = tolerance - redrawn.bounds[c] if redrawn.bounds else tolerance
+        self._tolerance, self._given = tolerance, 0.0
         self._maybe = owns.get(redrawn.numbers[c]) if redrawn.bounds else None
         self._whole = False
-        cubics, degrees = contour.cubics(), contour.degrees
-        ring = [Arc(cubics, True, cubics[:, :2, 0])]
-        self._arcs = ring if inner.all() else cut(cubics, degrees, inner, self._rounded)
+        # By joints of what is given: control points beside them that are chosen; and those that nothing helps.
+        self._aims, self._left = dict[int, tuple[bool, FloatArray, int] | None](), set[int]()
+        self._known = dict[Any, Fitted | None]()
         self._ranges: list[range] | None = None
-        self._shares = [1.0] * len(self._arcs)
-        kept = [False] * len(self._arcs)
         if self._maybe is not None:
             self._source = self.masters.contours[redrawn.numbers[c]]
             if self._maybe.first is not None:
-                self._ranges = ranges_of(contour, inner, self._source)
+                self._ranges = ranges_of(self._contour, self._inner, self._source)
+        if redrawn.bounds and self._ranges is None:  # the distance is measured from what is given
+            self._given = redrawn.bounds[c]
+        self._cut()
+
+    def _cut(self) -> None:
+        """Cut the contour into its lines and arcs, and fit these."""
+        contour, inner = self._contour, self._inner
+        cubics = contour.cubics()
+        ring = [Arc(cubics, True, cubics[:, :2, 0])]
+        self._arcs = ring if inner.all() else cut(cubics, contour.degrees, inner, self._rounded)
+        self._kept = [False] * len(self._arcs)
         if self._ranges is not None:
-            pairs = zip(spans_of(inner), self._ranges, strict=True)
-            kept = [is_own(contour, span, self._source, own) for span, own in pairs]
             every = self._source.cubics()
-            for k, own in enumerate(self._ranges):
-                self._arcs[k] = replace(self._arcs[k], source=every[:, np.array(own) % len(self._source)])
-            self._tolerance = tolerance  # which is measured from the source
-            self._shares = [SAMPLED] * len(self._arcs)
-        self._kept = kept
+            for k, (span, own) in enumerate(zip(spans_of(inner), self._ranges, strict=True)):
+                self._arcs[k] = replace(self._arcs[k], cubics=every[:, np.array(own) % len(self._source)])
+                self._kept[k] = len(span) == 1 and is_own(contour, span, self._source, own)
+        firsts = [int(span[0]) for span in spans_of(inner)]
+        for joint, aimed in self._aims.items():
+            if aimed is not None:
+                (at_end, point, count), k = aimed, firsts.index(joint)
+                k -= at_end
+                arc = replace(self._arcs[k], count=count)
+                self._arcs[k] = replace(arc, last=point) if at_end else replace(arc, first=point)
         self._fits: list[Fitted | None] = [None] * len(self._arcs)
         for k in range(len(self._arcs)):
             self._fit(k)
@@ -149,20 +167,41 @@ class Quadratic:
         return self._whole or all(self._kept)
 
     @property
+    def held(self) -> int:
+        """How many curves of the source stay."""
+        if self.is_own:
+            return int((self._contour.degrees > 1).sum())
+        own = [np.array(each) for each, kept in zip(self._ranges or (), self._kept, strict=False) if kept]
+        return sum(int((self._source.degrees[each % len(self._source)] > 1).sum()) for each in own)
+
+    @property
     def distance(self) -> float:
-        """The largest from the contour that was given."""
+        """A bound of the distance from the source, where it is known what each arc replaces; or from what was given."""
+        if self.is_own:
+            return 0.0
         far = [each.distance for each in self._fits if each is not None]
         for k, arc in enumerate(self._arcs):
             if self._starts_there(k):
                 far.append(float(np.hypot(*(self._weights @ (arc.ends[:, 0] - arc.cubics[:, 0, 0])).T).max()))
         if any(self._kept):
             far.append(float(np.linalg.norm(np.tensordot(self._weights, self.own.moved, axes=1), axis=2).max()))
-        return max(far, default=0.0)
+        return max(far)
+
+    @property
+    def bound(self) -> float:
+        """A bound of the distance from the source."""
+        return 0.0 if self.is_own else self._given + self.distance
 
     @property
     def shortest(self) -> float:
         """The shortest leg of a quadratic at an implied point; infinite if there is none."""
-        return min([each.shortest for each in self._fits if each is not None], default=np.inf)
+        legs = [np.inf]
+        for arc, fitted in zip(self._arcs, self._fits, strict=True):
+            if fitted is not None:
+                mixed = np.tensordot(self.masters.weights_at(locations(self.masters)), fitted.controls, axes=1)
+                steps = np.diff(np.concatenate([mixed, mixed[:, : int(arc.closed)]], axis=1), axis=1)
+                legs.append(float(np.hypot(steps[..., 0], steps[..., 1]).min(initial=np.inf) / 2))
+        return min(legs)
 
     def _rounded(self, points: FloatArray, metric: FloatArray | None = None) -> FloatArray:
         steps = rounded_deltas(self.masters, points + self._offset, 1, metric)
@@ -176,81 +215,19 @@ class Quadratic:
         most = None
         if self._fewest and self._maybe is not None:
             most = len(self._maybe.on) if self._ranges is None or arc.closed else len(self._points_of(k)) - 1
-        near = self._shares[k] * self._tolerance
-        self._fits[k] = found = fit(arc, self._weights, near, self._rounded, most)
+        near = self._tolerance - self._given
+        key = tuple(each.tobytes() if isinstance(each, np.ndarray) else each for each in astuple(arc))
+        if key not in self._known:
+            self._known[key] = fit(arc, self._weights, near, self._rounded, most)
+        self._fits[k] = found = self._known[key]
         if found is None or (self._maybe is not None and found.distance > near):
             self._keep(k)
 
-    def bound(self, given: float) -> float:
-        """A bound of the distance from the source: certified where it is known what each arc replaces; or else, with
-        what was ``given`` for the contour, the distance from that.
-        """
-        if self.is_own:
-            return 0.0
-        if self._ranges is None:
-            return given + self.distance
-        moved = float(np.linalg.norm(np.tensordot(self._weights, self.own.moved, axes=1), axis=2).max())
-        return max(moved * any(self._kept), float(self._certified().max()))
-
-    def too_far(self) -> bool:
-        """Leave arcs as they are that are not certified within the tolerance; whether there were any."""
-        if self.is_own or self._ranges is None:
-            return False
-        far = np.flatnonzero(self._certified() > self._tolerance).tolist()
-        for k in far:
-            if self._shares[k] > CLOSER and self._fits[k] is not None:
-                self._shares[k] = CLOSER
-                self._fit(k)
-            else:
-                self._keep(k)
-        return bool(far)
-
-    def _certified(self) -> FloatArray:
-        """(P,) the certified distance of each stretch from the source, at every location; 0 for those that stay."""
-        assert self._ranges is not None
-        corners = np.unique(self.masters.weights_at(self.masters.grid()).round(12), axis=0)
-        V, m = len(corners), len(self._source)
-        results, sources = (
-            np.ascontiguousarray(np.einsum("vk,kmpc->mvpc", corners, contour.cubics()).reshape(-1, 4, 2))
-            for contour in (self.stored(), self._source)
-        )
-        starts = np.concatenate([[0], np.cumsum(self._counts())])
-        count, closed = int(starts[-1]), self._arcs[0].closed
-        places, arcs, bounds = np.empty(count), np.empty((count, 4)), np.zeros(count)
-        low = float(self._ranges[0].start)
-        for k, own in enumerate(self._ranges):
-            a, b, high = int(starts[k]), int(starts[k + 1]), low + len(own)
-            arcs[a:b] = (-np.inf, np.inf, -np.inf, np.inf) if closed else (a, b, low, high)
-            fitted = self._fits[k]
-            if fitted is None:  # a line, or segments that stay
-                places[a:b] = low + np.arange(b - a) * (len(own) / (b - a))
-            else:
-                hints = np.ascontiguousarray(low + fitted.places)
-                inner = 0 if closed else 1
-                own_hints, begins = hints[inner:], results[V * (a + inner) : V * b]
-                if len(own_hints):
-                    near_places(V, sources, own_hints, begins, closed, low, high, own_hints)
-                places[a:b] = hints
-            if not closed:
-                places[a] = low
-            bounds[a:b] = 0.0 if self._kept[k] else np.nan
-            low = high
-        if closed:
-            places += m * np.ceil(max(-places[0], 0.0) / m) - m * np.floor(max(places[0], 0.0) / m)
-        anchors = np.stack([np.arange(count + 1.0), np.append(places, places[0] + m)], axis=1)
-        ends = [np.array([0, each]) for each in (count, m, count + 1)]
-        pair_instances(
-            V, results, ends[0], sources, ends[1], anchors, ends[2], arcs, 0.0, self._tolerance, bounds, np.zeros(count)
-        )
-        return np.maximum.reduceat(bounds, starts[:-1])
-
     def _counts(self) -> list[int]:
         """The segments of each stretch as it is stored."""
-        assert self._ranges is not None
-        return [
-            len(own) if kept else 1 if fitted is None else fitted.controls.shape[1]
-            for own, kept, fitted in zip(self._ranges, self._kept, self._fits, strict=True)
-        ]
+        own = [1] * len(self._fits) if self._ranges is None else [len(each) for each in self._ranges]
+        fits = zip(self._fits, self._kept, own, strict=True)
+        return [count if kept else 1 if each is None else each.controls.shape[1] for each, kept, count in fits]
 
     def _keep(self, k: int) -> None:
         self._fits[k] = None
@@ -277,21 +254,20 @@ class Quadratic:
     def points(self) -> tuple[IntArray, BoolArray]:
         """(K, N, 2) the default and the deltas of its points, and which of them are on the curve."""
         if self.is_own:
-            turn = -int(self.own.turned)
-            return np.roll(self.own.steps, turn, axis=1), np.roll(self.own.on, turn)
-        steps, on = [], []
+            return self.own.as_stored()
+        drawn, on = [], []
         for k, arc in enumerate(self._arcs):
             if self._starts_there(k):
-                steps.append(rounded_deltas(self.masters, arc.ends[:, :1] + self._offset, 1))
+                drawn.append(self._rounded(arc.ends[:, :1]))
                 on.append(True)
             if self._kept[k]:
                 numbers = self._points_of(k)
-                steps.append(self.own.steps[:, numbers])
+                drawn.append(as_drawn(self.masters, self.own.steps[:, numbers], 1) - self._offset)
                 on += self.own.on[numbers].tolist()
             elif (fitted := self._fits[k]) is not None:
-                steps.append(rounded_deltas(self.masters, fitted.controls + self._offset, 1))
+                drawn.append(fitted.controls)
                 on += [False] * fitted.controls.shape[1]
-        return np.concatenate(steps, axis=1), np.array(on)
+        return steps_of(self.masters, np.concatenate(drawn, axis=1) + self._offset), np.array(on)
 
     def _drawn(self) -> tuple[FloatArray, IntArray, BoolArray]:
         steps, on = self.points()
@@ -309,29 +285,92 @@ class Quadratic:
             return self.own.implied if self.own.first is not None else np.zeros(len(self._source), dtype=bool)
         return self._drawn()[2]
 
-    def retreat(self, segment: int) -> bool:
+    def retreat(self, segments: Sequence[int]) -> bool:
         """See :class:`.stretches.Plan`."""
-        if self._maybe is None or self.is_own:
+        if self.is_own:
             return False
+        if self._maybe is None:
+            return self._soften(segments)
         if self._ranges is None or self._arcs[0].closed:
             self._whole = True
             return True
         owners = np.repeat(np.arange(len(self._arcs)), self._counts()).tolist()
-        before, after = owners[segment - 1], owners[segment]
-        moved = False
-        for k, at_end in ((before, True), (after, False)):
-            if self._kept[k]:
-                continue
-            moved, arc, control = True, self._arcs[k], self._control(k, at_end)
-            held = arc.last if at_end else arc.first
-            if before == after or control is None or held is not None:
-                self._keep(k)
-            else:
-                self._arcs[k] = replace(arc, last=control) if at_end else replace(arc, first=control)
-                self._fit(k)
-        if not moved:
-            self._whole = True
+        for before, after in dict.fromkeys((owners[segment - 1], owners[segment]) for segment in segments):
+            moved = False
+            for k, at_end in ((before, True), (after, False)):
+                if self._kept[k]:
+                    continue
+                moved, arc, control = True, self._arcs[k], self._control(k, at_end)
+                held = arc.last if at_end else arc.first
+                if before == after or control is None or held is not None:
+                    self._keep(k)
+                else:
+                    self._arcs[k] = replace(arc, last=control) if at_end else replace(arc, first=control)
+                    self._fit(k)
+            self._whole |= not moved
         return True
+
+    def _soften(self, segments: Sequence[int]) -> bool:
+        """Let curves where segments of :meth:`stored` begin take the direction of what is beyond, as nearly as the grid
+        has it; where that was in vain, let what meets there be one arc, lines too, if it is near enough.
+        """
+        if self._inner.all():
+            return False
+        starts, firsts = np.cumsum([0, *self._counts()])[:-1].tolist(), [int(each[0]) for each in spans_of(self._inner)]
+        turns_there = np.abs(turns_of(joint_controls(self._contour)))
+        tried = list[int]()
+        for k in [starts.index(segment) for segment in segments if segment in starts]:
+            joint = firsts[k]
+            if joint in self._left or not (turns_there[:, joint] < THRESHOLDS.corner_angle).all():
+                continue
+            self._aims[joint] = None if joint in self._aims else self._aimed(k, turns_there[:, joint])
+            self._inner[joint] = self._aims[joint] is None
+            tried.append(joint)
+            if self._inner[joint]:  # its other ends are those of another arc now
+                for other in (firsts[k - 1], firsts[(k + 1) % len(firsts)]):
+                    if self._aims.get(other) is not None:
+                        del self._aims[other]
+        if not tried:
+            return False
+        self._cut()
+        vain = [joint for joint in tried if self._is_far(joint)]
+        if vain:
+            for joint in vain:
+                if self._aims[joint] is None:
+                    self._left.add(joint)
+                self._aims[joint], self._inner[joint] = None, False
+            self._cut()
+        return True
+
+    def _is_far(self, joint: int) -> bool:
+        """Whether an arc that ends at a joint, or goes through it, is too far."""
+        every = zip(spans_of(self._inner), self._fits, strict=True)
+        far = [span for span, each in every if each is not None and each.distance > self._tolerance]
+        return any(joint in span or joint == (span[-1] + 1) % len(self._inner) for span in far)
+
+    def _aimed(self, k: int, turn: FloatArray) -> tuple[bool, FloatArray, int] | None:
+        """Whether the end of the arc before joint k is to be elsewhere, or else the beginning of that behind it; where:
+        near by in each master, with no more than the source's ``turn`` (K,); and its number of control points. None if
+        both are lines.
+        """
+        before, after = self._fits[k - 1], self._fits[k]
+        if before is None and after is None:
+            return None
+        at_end, node = after is None, self._arcs[k].ends[:, 0]
+        own, other, arc = (before, after, self._arcs[k]) if at_end else (after, before, self._arcs[k - 1])
+        assert own is not None
+        there = arc.ends[:, int(at_end)] if other is None else other.controls[:, 0 if at_end else -1]
+        here = own.controls[:, -1 if at_end else 0]
+        u, v = np.mgrid[-AIMS : AIMS + 1, -AIMS : AIMS + 1]
+        legs = (here - node)[:, None] + np.stack([u.ravel(), v.ravel()], axis=1)  # (K, C, 2)
+        beyond = (node - there)[:, None]
+        sine, cosine = cross(beyond, legs), (beyond * legs).sum(axis=2)
+        off = np.degrees(np.abs(np.arctan2(sine, cosine))) - np.maximum(turn, THRESHOLDS.kink / 2)[:, None]
+        unit = (here - node) / np.maximum(np.hypot(*(here - node).T), 1e-9)[:, None]
+        along, across = (legs - legs[:, [len(u) ** 2 // 2]]) @ unit[:, :, None], cross(unit[:, None], legs)
+        cost = (along[..., 0] / AIMS) ** 2 + across**2 / 4 + (np.maximum(off, 0.0) / 0.1) ** 2
+        best = legs[np.arange(len(legs)), cost.argmin(axis=1)]
+        return at_end, self._rounded((node + best)[:, None])[:, 0], own.controls.shape[1]
 
     def _control(self, k: int, at_end: bool) -> FloatArray | None:
         """(K, 2) the source's first or last control point of an arc; None if it is none of an arc."""
@@ -345,6 +384,51 @@ class Quadratic:
             return None
         drawn = as_drawn(self.masters, self.own.steps[:, number : number + 1], 1) - self._offset
         return np.asarray(drawn[:, 0])
+
+
+class Final:
+    """A contour that is as ``glyf`` stores it, in the place of its plan.
+
+    Args:
+        redrawn, c, owns, shift: see :class:`Quadratic`.
+    """
+
+    distance, shortest = 0.0, np.inf
+
+    def __init__(self, redrawn: Redrawn, c: int, owns: Mapping[int, Own], shift: FloatArray) -> None:
+        self._masters, self._contour, self._inner = redrawn.masters, redrawn.contours[c], redrawn.inner[c]
+        self._offset, self.bound = shift[:, None, None] * np.array([1.0, 0.0]), redrawn.bounds[c]
+        self._maybe, source = owns.get(redrawn.numbers[c]), redrawn.masters.contours[redrawn.numbers[c]]
+        self.is_own = self._maybe is not None and np.array_equal(source.points, self._contour.points)
+
+    @property
+    def own(self) -> Own:
+        """See :class:`Quadratic`."""
+        assert self._maybe is not None
+        return self._maybe
+
+    def points(self) -> tuple[IntArray, BoolArray]:
+        """See :class:`Quadratic`."""
+        if self.is_own:
+            return self.own.as_stored()
+        starts = np.cumsum(self._contour.degrees) - self._contour.degrees
+        on = np.isin(np.arange(self._contour.points.shape[1]), starts)
+        left = np.delete(np.arange(len(on)), starts[self._inner])
+        return steps_of(self._masters, self._contour.points[:, left] + self._offset), on[left]
+
+    def stored(self) -> MasterContour:
+        """See :class:`Quadratic`."""
+        return self._contour
+
+    def inside(self) -> BoolArray:
+        """See :class:`Quadratic`."""
+        return self._inner
+
+
+def steps_of(masters: Masters, points: FloatArray) -> IntArray:
+    """(K, N, 2) the default and the deltas of points that are rounded in all masters."""
+    steps = np.linalg.solve(masters.at_peaks, points.reshape(len(points), -1)).reshape(points.shape)
+    return np.rint(steps).astype(np.int64)
 
 
 def cut(

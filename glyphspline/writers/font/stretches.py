@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import pairwise
 from typing import Protocol
 
@@ -36,11 +37,8 @@ class Plan(Protocol):
     def stored(self) -> MasterContour:
         """What is drawn."""
 
-    def retreat(self, segment: int) -> bool:
-        """Take the next candidate for what meets where a segment of :meth:`stored` begins; False if there is none."""
-
-    def too_far(self) -> bool:
-        """Leave arcs as they are that are not certified within the tolerance; whether there were any."""
+    def retreat(self, segments: Sequence[int]) -> bool:
+        """Take the next candidates for what meets where segments of :meth:`stored` begin; False if there is none."""
 
 
 class Turning:
@@ -73,23 +71,31 @@ class Turning:
         self.places = np.array([starts[joint] for joint in chosen]).reshape(len(chosen), len(masters), 2)
         self._seen = lambda: kinks_of([masters], {}, moving, along, THRESHOLDS)
 
-    def kinks(self) -> tuple[int, int]:
-        """How many joints ``check`` reports, and how many of them turn more between masters than in them."""
+    @cached_property
+    def reported(self) -> dict[tuple[int, int], float]:
+        """The joints that ``check`` reports, and by how much they turn more between masters than in them."""
+        if not self.joints:
+            return {}
         seen, made = self._seen(), dict[tuple[int, int], tuple[float, float]]()
         rows = zip(seen.contours.tolist(), seen.segments.tolist(), *seen.numbers[:, 1:3].T.tolist(), strict=True)
         for c, s, turn, more in rows:
             made[c, s] = max(made.get((c, s), (0.0, 0.0)), (turn, more))
-        return len(made), sum(more > 0 for _, more in made.values())
+        return {joint: more for joint, (_, more) in made.items()}
+
+    def kinks(self) -> tuple[int, int]:
+        """How many joints ``check`` reports, and how many of them turn more between masters than in them."""
+        return len(self.reported), sum(more > 0 for more in self.reported.values())
 
     def not_in(self, source: Turning) -> list[tuple[int, int]]:
-        """Contour and segment of the joints that do not turn so in the source."""
-        found = []
+        """Contour and segment of the joints that do not turn so in the source, or are not reported there."""
+        found, known = [], np.array([joint in source.reported for joint in source.joints], dtype=np.bool_)
         for joint, place, turn in zip(self.joints, self.places, self.turns.tolist(), strict=True):
             # Distance in font units, in every master, up to which a joint is the source's: rounding moves it by half a
             # unit.
             near = np.abs(source.places - place).max(axis=(1, 2), initial=0.0) <= 1.0
             # Degrees by which a joint may turn more than the source's before another candidate is taken.
-            if not (near & (source.turns >= turn - 0.05)).any():
+            alike = near & (source.turns >= turn - 0.05)
+            if not alike.any() or (joint in self.reported and not (near & known).any()):
                 found.append(joint)
         return found
 
@@ -100,9 +106,9 @@ def settle(masters: Masters, plans: Sequence[Plan]) -> tuple[Turning, Turning]:
     while True:
         stored = [plan.stored() for plan in plans]
         found = Turning(replace(masters, contours=stored, repeats=None))
-        bad = found.not_in(source) + [(c, s) for c, contour in enumerate(stored) for s in vanished(contour)]
-        moved = [plans[c].retreat(s) for c, s in bad]
-        if not any(moved) and not any([plan.too_far() for plan in plans]):  # noqa: C419 (all of them)
+        bad = found.not_in(source)
+        segments = [[s for owner, s in bad if owner == c] + vanished(contour) for c, contour in enumerate(stored)]
+        if not any([plan.retreat(own) for plan, own in zip(plans, segments, strict=True) if own]):  # noqa: C419 (all)
             return source, found
 
 
@@ -224,20 +230,19 @@ class Segments:
         parts = [np.zeros(len(span), bool) if own else self.inner[span] for _, span, own in self._pieces()]
         return np.concatenate(parts)
 
-    def too_far(self) -> bool:
-        """See :class:`Plan`: the curves given are as near as they are."""
-        return False
-
-    def retreat(self, segment: int) -> bool:
+    def retreat(self, segments: Sequence[int]) -> bool:
         """See :class:`Plan`."""
         if self.is_own:
             return False
-        owners = np.repeat(np.arange(len(self.own)), [len(span) for _, span, _ in self._pieces()])
-        for k in (int(owners[segment - 1]), int(owners[segment])):
-            if not self.own[k]:
-                self.keep(k)
-                return True
-        return False
+        owners = np.repeat(np.arange(len(self.own)), [len(span) for _, span, _ in self._pieces()]).tolist()
+        moved = False
+        for before, after in [(owners[segment - 1], owners[segment]) for segment in segments]:
+            for k in (before, after):
+                if not self.own[k]:
+                    self.keep(k)
+                    moved = True
+                    break
+        return moved
 
 
 def fewest(plans: Sequence[Segments]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -18,10 +18,11 @@ from fontTools.ttLib.tables.TupleVariation import TupleVariation, compileTupleVa
 from fontTools.varLib.iup import iup_contour_optimize
 
 from ...errors import GlyphsplineError
+from ...outlines.masters import Masters
 from ...types import FloatArray
 from .font_glyphs import parts_of, simple_glyph, users
 from .master_deltas import Redrawn, StoredGlyph, check_steps, region_key
-from .quadratic_contours import PHANTOMS, Quadratic, own_contours
+from .quadratic_contours import PHANTOMS, Final, Own, Quadratic, own_contours
 from .stretches import NOTHING_NEW, settle, tally
 
 
@@ -45,32 +46,28 @@ class Quadratics:
         if name in self._counted:
             raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
         old = self._glyf[name]
-        # Regions to the numbers of their masters; the default is 0.
-        known: dict[Any, int] = {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
+        known = numbers_of(masters)
         given = self._gvar.variations(name)
         keys = [region_key(self._gvar.region(variation)) for variation in given]
         for key, variation in zip(keys, given, strict=True):
             moves = any(delta not in (None, (0, 0)) for delta in variation.coordinates[:-PHANTOMS])
             if key and key not in known and moves:
                 raise GlyphsplineError("its variations have a region that its masters have not", glyph=name)
-        # Rasterisers move a glyph so that its left side bearing is the font's: masters drawn at 0 begin elsewhere.
-        lefts = np.zeros(len(masters))
-        lefts[0] = getattr(old, "xMin", 0) - self._font["hmtx"][name][1]
-        for key, variation in zip(keys, given, strict=True):
-            if key in known and variation.coordinates[-PHANTOMS] is not None:
-                lefts[known[key]] += variation.coordinates[-PHANTOMS][0]
-        shift = np.asarray(masters.scalars(masters.peaks) @ lefts)
-        tuples = [(known[key], variation) for key, variation in zip(keys, given, strict=True) if key in known]
-        owns = own_contours(masters, old, tuples, shift) if redrawn.bounds else {}
-        plans = [Quadratic(redrawn, c, owns, shift, tolerance) for c in range(len(redrawn.contours))]
-        tallied = None
+        owns, shift = self.own(name, masters)
+        count, tallied = range(len(redrawn.contours)), redrawn.tally
+        plans: Sequence[Quadratic | Final]
+        if tallied is not None:
+            plans = [Final(redrawn, c, owns, shift) for c in count]
+        else:
+            plans = fitted = [Quadratic(redrawn, c, owns, shift, tolerance) for c in count]
+            turning = settle(masters, fitted)
         if redrawn.bounds:
-            turning = settle(masters, plans)
             if plans and all(plan.is_own for plan in plans):
                 raise GlyphsplineError(NOTHING_NEW, glyph=name)
-            before = len(getattr(old, "coordinates", ()))
-            after = sum(len(plan.points()[1]) for plan in plans)
-            tallied = tally((before, after), turning, redrawn.fewest)
+            if tallied is None:
+                before = len(getattr(old, "coordinates", ()))
+                after = sum(len(plan.points()[1]) for plan in plans)
+                tallied = tally((before, after), turning, redrawn.fewest)
         drawn = [plan.points() for plan in plans]
         none = np.zeros((len(masters), 0, 2), dtype=np.int64)
         steps = np.concatenate([none, *[points for points, _ in drawn]], axis=1)
@@ -104,17 +101,35 @@ class Quadratics:
                 kept.append(TupleVariation(variation.axes, moved))
         self._gvar.put(self._font.getGlyphID(name), kept)
         shortest = min((plan.shortest for plan in plans), default=np.inf)
-        far = [0.0 if plan.is_own else plan.distance for plan in plans]
-        bounds = [plan.bound(given) for plan, given in zip(plans, redrawn.bounds, strict=False)]
+        far, bounds = [plan.distance for plan in plans], [plan.bound for plan in plans]
         return StoredGlyph(
             tuple(plan.stored() for plan in plans), tuple(plan.inside() for plan in plans), max(far, default=0.0),
             shortest if np.isfinite(shortest) else None, max(bounds, default=0.0) if redrawn.bounds else None, tallied,
         )  # fmt: skip
 
+    def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
+        """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :class:`Quadratic`."""
+        old, known = self._glyf[name], numbers_of(masters)
+        keyed = [(region_key(self._gvar.region(each)), each) for each in self._gvar.variations(name)]
+        tuples = [(known[key], variation) for key, variation in keyed if key in known]
+        # Rasterisers move a glyph so that its left side bearing is the font's: masters drawn at 0 begin elsewhere.
+        lefts = np.zeros(len(masters))
+        lefts[0] = getattr(old, "xMin", 0) - self._font["hmtx"][name][1]
+        for k, variation in tuples:
+            if variation.coordinates[-PHANTOMS] is not None:
+                lefts[k] += variation.coordinates[-PHANTOMS][0]
+        shift = np.asarray(masters.at_peaks @ lefts)
+        return own_contours(masters, old, tuples, shift), shift
+
     def finish(self) -> None:
         """Put the new glyphs into the font: bounds, side bearings, offsets and maxima follow."""
         put_glyphs(self._font, self._new)
         self._gvar.store(self._font)
+
+
+def numbers_of(masters: Masters) -> dict[Any, int]:
+    """Regions to the numbers of their masters; the default is 0."""
+    return {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
 
 
 def put_glyphs(font: TTFont, new: Mapping[str, Glyph]) -> bool:
