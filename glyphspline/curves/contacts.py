@@ -43,9 +43,13 @@ def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArra
             small = radius
             if c == d:  # the strands may be the two sides of a fold, or of a small loop
                 small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
-                # A contact shorter than this share of the radius is a point.
+                # A contact shorter than this share of the radius is a point. Beside a longer one that ends in a fold,
+                # the strands may cross where it begins.
                 if small < radius and one.reach(a, a_end) > 0.1 * radius:
-                    continue
+                    (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(*at))
+                    if one.reach(a, b) < 2 * radius:
+                        continue
+                    small = radius
             along = other.way(b, b_end) >= 0
             # Directions nearer to each other than this, in radians, are the same.
             circles = [(small, 1e-8)]

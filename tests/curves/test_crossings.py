@@ -136,6 +136,19 @@ def test_a_loop_at_a_joint_that_is_smaller_than_the_chords_there_is_found() -> N
     assert not crossings_of(np.concatenate([[there, back + np.array([0.1, 0])], around]))
 
 
+@pytest.mark.parametrize(("back", "expected"), [(759.03, 1), (759.02, 0), (759.01, 0)])
+def test_sides_of_a_hair_that_cross_before_they_meet_are_found(back: float, expected: int) -> None:
+    """There and back on one line. The way back leaves it earlier than the way there joins it, by less than 1e-6."""
+    there = [(758.23, 115.09), (758.41, 115), (758.71, 115), (759.02, 115)]
+    tip = [
+        [(759.02, 115), (759.33, 115), (759.67, 115), (759.67, 115)],
+        [(759.67, 115), (759.67, 115), (759.33, 115), (back, 115)],
+    ]
+    away = [(back, 115), (758.72, 115), (758.44, 115), (758.2, 115.02)]
+    around = lines([(758.2, 115.02), (722, 125), (722, 1000), (753, 156), (758.23, 115.09)])[:4]
+    assert len(crossings_of(np.concatenate([[there, *tip, away], around]))) == expected
+
+
 def test_crossings_beside_the_tip_of_a_fold_are_found_both() -> None:
     """The tip penetrates by 2e-4 of 1,000, and a chord ends 4e-6 from one of the two crossings."""
     chain = [
