@@ -7,7 +7,7 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.comb import control_length
 from ..curves.cubics import jet, length
-from ..curves.fairness import MOST, TURN, curvatures, first_of, swings
+from ..curves.fairness import MOST, TURN, curvatures, swings
 from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray
 from .turns import NO_HANDLE
@@ -56,7 +56,7 @@ def bend_findings(
         least = TURN / extent
         found, at, sizes = np.empty(n + 2, dtype=np.int64), np.empty(n + 2), np.empty(n + 2)
         # From a curvature between bends, or else from behind an inflection: the first of another sign than the last.
-        start, last = first_of(values, n), 0.0
+        start, last = int(np.argmax(values[:n])), 0.0
         whole = not np.isnan(values[start])
         for i in range(start, start + (n if whole else 0)):
             value = values[i % n]

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
-from ..types import FloatArray, IntArray
 from .finding import Finding, Measured, findings
 from .kinds import JUMP, LUMP, REPEATED, THRESHOLDS, Thresholds
 
@@ -52,12 +51,15 @@ def measured(glyphs: Sequence[Any], thresholds: Thresholds, units_per_em: float,
     firsts = offsets_of([len(glyph) for glyph in glyphs])
     cubics = all_cubics(contours)
     segments = Segments.of(cubics, contours)
+    repeats = np.concatenate([glyph.repeats for glyph in glyphs])  # of points, which readers leave out
+    points = np.flatnonzero(repeats)
+    again = np.searchsorted(contours.offsets, points, side="right") - 1
     table = np.concatenate([
         joint_findings(segments, limits),
         segment_findings(segments, limits),
         rows(LUMP, *bend_findings(cubics, contours, limits.lump, limits.lump_height, limits.corner_angle).T),
         enclosed_findings(cubics, segments, firsts, limits, units_per_em / 1000, outer),
-        _repeated(np.concatenate([glyph.repeats for glyph in glyphs]), contours.offsets),
+        rows(REPEATED, again, points - contours.offsets[again], repeats[points]),
     ])  # fmt: skip
     jumps = table[:, WHAT] == JUMP
     table[jumps, VALUE] *= units_per_em
@@ -73,16 +75,3 @@ def measured(glyphs: Sequence[Any], thresholds: Thresholds, units_per_em: float,
         evaluate(cubics[contours.offsets[contour] + places], numbers[:, 0]),
         np.empty((len(table), 0)), np.full((len(table), 2), np.nan),
     )  # fmt: skip
-
-
-def _repeated(repeats: IntArray, offsets: IntArray) -> FloatArray:
-    """(n, 7) points that the font has more than once, which readers leave out; see :mod:`.segments`.
-
-    Args:
-        repeats: (m,) as in :class:`.Contours`. offsets: (C + 1,) first segment of each contour of all glyphs, and m.
-    """
-    from .segments import rows
-
-    at = np.flatnonzero(repeats)
-    contour = np.searchsorted(offsets, at, side="right") - 1
-    return rows(REPEATED, contour, at - offsets[contour], repeats[at])

@@ -76,26 +76,18 @@ class Segments(NamedTuple):
     @classmethod
     def of(cls, cubics: FloatArray, contours: ContourArrays) -> Segments:
         """The segments of contours; ``cubics`` (m, 4, 2): all of them."""
-        points = cubics.view(np.complex128)[..., 0]
-        return cls(points, contours.degrees, contours.offsets, *arranged(points, contours.degrees, contours.offsets))
-
-
-def arranged(
-    points: ComplexArray, degrees: IntArray, offsets: IntArray
-) -> tuple[IntArray, IntArray, ComplexArray, ComplexArray]:
-    """(m,) neighbours of each segment, and handles; see :class:`Segments`."""
-    m = len(points)
-    handles = []
-    for arms in (points[:, 1:] - points[:, :1], points[:, 3:] - points[:, 2::-1]):
-        long = np.abs(arms.real) + np.abs(arms.imag) > NO_HANDLE
-        handles.append(np.where(long.any(axis=1), 3 / degrees * arms[np.arange(m), long.argmax(axis=1)], 0))
-    own = np.flatnonzero(handles[0])
-    contour, k = np.searchsorted(offsets, own, side="right"), np.arange(len(own))
-    first, last = np.searchsorted(contour, contour), np.searchsorted(contour, contour, side="right") - 1
-    before, behind = np.arange(m), np.arange(m)
-    before[own] = own[np.where(k == first, last, k - 1)]
-    behind[own] = own[np.where(k == last, first, k + 1) % max(len(own), 1)]
-    return before, behind, handles[0], handles[1]
+        points, degrees, m = cubics.view(np.complex128)[..., 0], contours.degrees, len(cubics)
+        handles = []
+        for arms in (points[:, 1:] - points[:, :1], points[:, 3:] - points[:, 2::-1]):
+            long = np.abs(arms.real) + np.abs(arms.imag) > NO_HANDLE
+            handles.append(np.where(long.any(axis=1), 3 / degrees * arms[np.arange(m), long.argmax(axis=1)], 0))
+        own = np.flatnonzero(handles[0])
+        contour, k = np.searchsorted(contours.offsets, own, side="right"), np.arange(len(own))
+        first, last = np.searchsorted(contour, contour), np.searchsorted(contour, contour, side="right") - 1
+        before, behind = np.arange(m), np.arange(m)
+        before[own] = own[np.where(k == first, last, k - 1)]
+        behind[own] = own[np.where(k == last, first, k + 1) % max(len(own), 1)]
+        return cls(points, degrees, contours.offsets, before, behind, *handles)
 
 
 @compiled

@@ -103,12 +103,9 @@ class Spline:
         """(pieces, degree + 1) indices of the control points of each span."""
         return span_controls(len(self.knots) - 1, self.degree, self.closed)[self.spans]
 
-    def _pieces(self, controls: FloatArray) -> FloatArray:
-        return bezier_pieces(self.full_knots, controls, self.spans)
-
     @cached_property
     def _bezier(self) -> FloatArray:
-        return self._pieces(self.control_points[self.span_controls])
+        return bezier_pieces(self.full_knots, self.control_points[self.span_controls], self.spans)
 
     def to_bezier(self) -> FloatArray:
         """The curve as Bézier pieces, one per knot span, in curve order: (pieces, degree + 1, d)."""
@@ -184,11 +181,6 @@ class Spline:
             axis = np.cross(first, second)
             return np.asarray((axis * third).sum(axis=-1) / (axis * axis).sum(axis=-1))
 
-    def _require_plane(self, what: str) -> None:
-        d = self.control_points.shape[1]
-        if d != 2:
-            raise OptionError(f"{what} needs a spline in the plane, not in R^{d}; project(weights) gives one")
-
     def project(self, weights: ArrayLike) -> Spline:
         """The planar spline of a blend of masters, for a spline of K masters side by side: x_1, y_1, x_2, y_2, …
 
@@ -219,7 +211,8 @@ class Spline:
         """(len(t), degree + 1) which basis functions are not zero at t, by control point, and their values there."""
         span, x, _ = self._locate(np.asarray(t, dtype=np.float64).ravel())
         d = self.degree
-        local = self._pieces(np.broadcast_to(np.eye(d + 1), (len(self.spans), d + 1, d + 1)))
+        identity = np.broadcast_to(np.eye(d + 1), (len(self.spans), d + 1, d + 1))
+        local = bezier_pieces(self.full_knots, identity, self.spans)
         return self.span_controls[span], evaluate(local[span], x)
 
     def basis(self, t: ArrayLike) -> FloatArray:
@@ -238,8 +231,9 @@ class Spline:
         Raises:
             OptionError: the spline is not in the plane.
         """
-        self._require_plane("drawing")
-        pieces = self._bezier
+        pieces, d = self._bezier, self.control_points.shape[1]
+        if d != 2:
+            raise OptionError(f"drawing needs a spline in the plane, not in R^{d}; project(weights) gives one")
         if self.degree > 3:
             extent = float(np.ptp(self.control_points, axis=0).max())
             pieces = cubic_approximation(pieces, tolerance or 1e-5 * extent)

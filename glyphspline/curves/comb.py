@@ -199,14 +199,11 @@ def frame(cubics: FloatArray, j: int, t: float, size: float) -> tuple[float, flo
     return x, y, 0.0, 0.0, 0.0
 
 
-@compiled
 def end_curvatures(cubics: FloatArray) -> FloatArray:
     """(m, 2) signed curvature at the start and the end of each piece."""
-    found = np.empty((len(cubics), 2))
-    for j in range(len(cubics)):
-        for end in range(2):
-            _, _, _, _, found[j, end] = frame(cubics, j, 1.0 * end, size_of(cubics, j))
-    return found
+    sizes = np.abs(cubics - cubics[:, :1]).max(axis=(1, 2))
+    rows = [[frame(cubics, j, t, size)[4] for t in (0.0, 1.0)] for j, size in enumerate(sizes.tolist())]
+    return np.array(rows).reshape(-1, 2)
 
 
 @compiled

@@ -269,23 +269,18 @@ def decided(A: FloatArray, B: FloatArray, kind: int) -> bool:
             other_low, other_high = min(other_low, B[k, axis]), max(other_high, B[k, axis])
         if low > other_high or other_low > high:
             return True
-    return beside(A, B) or beside(B, A)
-
-
-@compiled
-def beside(A: FloatArray, B: FloatArray) -> bool:
-    """Whether a line along the chord of A separates A's Bézier points from B's."""
-    x, y = A[3, 0] - A[0, 0], A[3, 1] - A[0, 1]
-    low = high = 0.0
-    for k in range(1, 3):
-        across = x * (A[k, 1] - A[0, 1]) - y * (A[k, 0] - A[0, 0])
-        low, high = min(low, across), max(high, across)
-    least, most = np.inf, -np.inf
-    for k in range(4):
-        across = x * (B[k, 1] - A[0, 1]) - y * (B[k, 0] - A[0, 0])
-        least, most = min(least, across), max(most, across)
-    slack = 1e-13 * (abs(low) + abs(high) + abs(least) + abs(most))
-    return least > high + slack or most < low - slack
+    for one, other in ((A, B), (B, A)):  # a line along the chord of one separates the points of both
+        x, y = one[3, 0] - one[0, 0], one[3, 1] - one[0, 1]
+        low, high, least, most = 0.0, 0.0, np.inf, -np.inf
+        for k in range(4):
+            across = x * (one[k, 1] - one[0, 1]) - y * (one[k, 0] - one[0, 0])
+            low, high = (min(low, across), max(high, across)) if 0 < k < 3 else (low, high)
+            across = x * (other[k, 1] - one[0, 1]) - y * (other[k, 0] - one[0, 0])
+            least, most = min(least, across), max(most, across)
+        slack = 1e-13 * (abs(low) + abs(high) + abs(least) + abs(most))
+        if least > high + slack or most < low - slack:
+            return True
+    return False
 
 
 @compiled

@@ -57,7 +57,7 @@ def extrema_of(values: FloatArray, n: int, least: float) -> int:
     """Number of significant extrema among n curvatures in order, NaN at corners; ``least`` is their absolute part."""
     if n == 0:
         return 0
-    start = first_of(values, n)
+    start = int(np.argmax(values[:n]))  # the first corner, or else the largest of all; see ``swings``
     found = np.empty(n + 1, dtype=np.int64)
     if not np.isnan(values[start]):
         return swings(values, n, start, start + n + 1, 1.0, SHARE, least, found)
@@ -70,26 +70,13 @@ def extrema_of(values: FloatArray, n: int, least: float) -> int:
 
 
 @compiled
-def first_of(values: FloatArray, n: int) -> int:
-    """Index of the first corner among n curvatures, or else of the largest of all.
-
-    From there once around, and there again: whatever is significantly below some value is so below a larger one, so
-    nothing is gained by waiting, or by another start.
-    """
-    start = 0
-    for i in range(n):
-        if np.isnan(values[i]):
-            return i
-        if values[i] > values[start]:
-            start = i
-    return start
-
-
-@compiled
 def swings(
     values: FloatArray, n: int, first: int, last: int, sign: float, share: float, least: float, found: IntArray
 ) -> int:
     """How many times a sequence alternately rises and falls significantly.
+
+    Of a closed one a lap from its largest value finds all: what is significantly below some value is so below a larger
+    one.
 
     Args:
         values: n of them, taken around and times ``sign``, from place ``first`` up to ``last``, exclusive.

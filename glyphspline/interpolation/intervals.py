@@ -130,13 +130,10 @@ def search_intervals(
         bounds = inner
     elif variant == 3:
         bounds = np.stack([centres, centres], axis=1)
-    elif fallback == "peak":
-        level = np.minimum(0.5 + margin, PEAK_SHARE * highest)
-        bounds = np.clip(level_interval(windows, peak, level), inner[:, :1], inner[:, 1:])
     else:
-        level = np.minimum(0.5 + margin, highest)
+        level = np.minimum(0.5 + margin, PEAK_SHARE * highest if fallback == "peak" else highest)
         bounds = np.clip(level_interval(windows, peak, level), inner[:, :1], inner[:, 1:])
-        bounds = np.where(low[:, None], centres[:, None], bounds)
+        if fallback == "knot":
+            bounds = np.where(low[:, None], centres[:, None], bounds)
     least = np.minimum(basis_function(windows, bounds[:, 0]), basis_function(windows, bounds[:, 1]))
-    fallbacks = int(low.sum()) if variant in (2, 4) else 0
-    return Intervals(bounds, fallbacks, float(2 * (1 - least.min(initial=1.0))))
+    return Intervals(bounds, int(low.sum()), float(2 * (1 - least.min(initial=1.0))))

@@ -276,8 +276,9 @@ def interpolate_reference(
     run = iterate(one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics)
     free, t, residuals = run.controls, run.footpoints, run.residuals
     if method.finish == "solve" and len(free):
-        free = _solve(problem, t)
-        residuals.append(_error_at(problem, free, t))
+        spline, p = problem.spline(np.zeros_like(free)), problem.points[problem.vertices]
+        free = np.asarray(np.linalg.solve(problem.matrix(t), p - spline(t)), dtype=np.float64)
+        residuals.append(float(lengths(p - problem.spline(free)(t)).max()))
     parameters, bounds = problem.centres.copy(), np.stack([problem.centres, problem.centres], axis=1)
     parameters[problem.vertices], bounds[problem.vertices] = t, problem.intervals.bounds
     observed: dict[str, Any] = {}
@@ -324,15 +325,3 @@ def _sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, 
 def _searches(problem: Problem) -> list[tuple[FloatArray, FloatArray, float]]:
     v = problem.vertices
     return list(zip(problem.points[v], problem.intervals.bounds, problem.centres[v], strict=True))
-
-
-def _solve(problem: Problem, t: FloatArray) -> FloatArray:
-    """The free control points whose curve passes through every vertex at the given parameters."""
-    spline = problem.spline(np.zeros((len(t), problem.fixed.shape[1])))
-    data = problem.points[problem.vertices] - spline(t)
-    return np.asarray(np.linalg.solve(problem.matrix(t), data), dtype=np.float64)
-
-
-def _error_at(problem: Problem, free: FloatArray, t: FloatArray) -> float:
-    e = problem.points[problem.vertices] - problem.spline(free)(t)
-    return float(lengths(e).max())

@@ -68,7 +68,9 @@ def _matched(
     scales = np.array([em / outline.metrics.units_per_em for outline in outlines])
     masters = []
     for scale, outline in zip(scales.tolist(), outlines, strict=True):
-        contours = _along_ink(outline)
+        contours = [contour for contour in outline.contours if len(contour) and np.ptp(contour.points, axis=0).any()]
+        if sum(area(contour.cubics()) for contour in contours) < 0:  # all counter-clockwise around ink
+            contours = [contour.reversed() for contour in contours]
         masters.append([Landmarks(Contour(c.points * scale, c.degrees), em) for c in contours])
     parts = [[own.contour] for own in masters[0]]
     for other, location in zip(masters[1:], locations[1:], strict=True):
@@ -79,14 +81,6 @@ def _matched(
             place = " ".join([f"{tag}={value:g}" for tag, value in location.items()])
             raise GlyphsplineError(f"unlike the master at {place}: {error.message}", contour=error.contour) from None
     return [_together(own) for own in parts], scales
-
-
-def _along_ink(outline: Outline) -> list[Contour]:
-    """Contours that have an extent, all reversed if their total signed area is negative."""
-    contours = [contour for contour in outline.contours if len(contour) and np.ptp(contour.points, axis=0).any()]
-    if sum(area(contour.cubics()) for contour in contours) < 0:
-        return [contour.reversed() for contour in contours]
-    return contours
 
 
 def _paired(one: Sequence[Landmarks], other: Sequence[Landmarks]) -> list[int]:

@@ -51,17 +51,13 @@ class DesignAxis:
         value = min(max(value, self.minimum), self.maximum)
         side = self.default - self.minimum if value < self.default else self.maximum - self.default
         x = (value - self.default) / side if side > 0 else 0.0
-        return _mapped(x, self.mapping) if self.mapping else x
+        return float(np.interp(x, *np.array(self.mapping).T)) if self.mapping else x
 
     def user(self, x: float) -> float:
         """The value of the axis at a normalised one."""
         if self.mapping:
-            x = _mapped(x, [(after, before) for before, after in self.mapping])
+            x = float(np.interp(x, *np.array(self.mapping).T[::-1]))
         return self.default + x * (self.default - self.minimum if x < 0 else self.maximum - self.default)
-
-
-def _mapped(x: float, pairs: Sequence[tuple[float, float]]) -> float:
-    return float(np.interp(x, [pair[0] for pair in pairs], [pair[1] for pair in pairs]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -208,12 +208,7 @@ class Source(ABC):
         found = [next(read) if isinstance(head, Head) else head for head in heads]
         if errors == "return":
             return found
-        outlines = []
-        for outline in found:
-            if isinstance(outline, GlyphsplineError):
-                raise outline
-            outlines.append(outline)
-        return outlines
+        return [_good(outline) for outline in found]
 
     def masters(self, name: str) -> Masters:
         """Read a glyph in all masters of a variable font, components decomposed; ``location`` does not matter.
@@ -225,13 +220,8 @@ class Source(ABC):
             FontError: the source has no glyph of that name.
             GlyphsplineError: the glyph is broken, or its masters are unlike; the error names file and glyph.
         """
-        head = self._head(name)
-        if not isinstance(head, Head):
-            raise head
-        found = attempt(self.path, head.name, partial(self._masters, head))
-        if isinstance(found, GlyphsplineError):
-            raise found
-        return found
+        head = _good(self._head(name))
+        return _good(attempt(self.path, head.name, partial(self._masters, head)))
 
     def _masters(self, head: Head) -> Masters:
         return Masters.of(self.outline(head.name))
@@ -282,6 +272,12 @@ class Source(ABC):
             return select(self.glyph_names, self.cmap, text, unicodes, glyphs, gids, all_glyphs)
         except GlyphsplineError as error:
             raise FontError(error.message, font=str(self.path)) from error
+
+
+def _good(found: Read | GlyphsplineError) -> Read:
+    if isinstance(found, GlyphsplineError):
+        raise found
+    return found
 
 
 @contextmanager

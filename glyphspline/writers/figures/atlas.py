@@ -14,7 +14,7 @@ from ...fitting.results import ContourResult, GlyphResult
 from ...outlines.ink import ink_sides
 from ...outlines.joins import Kind, joins
 from ...outlines.masters import Masters
-from ...outlines.outline import Contour, Outline
+from ...outlines.outline import Outline
 from ...types import FloatArray
 from ..settings import Combs
 from ..svg.comb import LONGEST, SOURCE, SPACING, Teeth, legend, shown_by, teeth
@@ -120,7 +120,8 @@ def profile(glyph: GlyphResult, scale: float) -> Any:
     em = glyph.outline.metrics.units_per_em
     figure = headed(label(glyph.outline), glyph.options.words)
     # Maximum number of contours of a glyph whose κ(s) is drawn, the longest first.
-    longest = sorted(range(len(glyph.contours)), key=lambda k: -_length(glyph.contours[k].source))[:4]
+    lengths = [float(np.hypot(*np.diff(c.source.points, axis=0).T).sum()) for c in glyph.contours]
+    longest = sorted(range(len(lengths)), key=lambda k: -lengths[k])[:4]
     grid = figure.add_gridspec(
         1 + len(longest), 2, left=0.09, right=0.96, top=0.94, bottom=0.09, hspace=0.35, wspace=0.08,
         height_ratios=[2.2] + [1] * len(longest),
@@ -206,10 +207,6 @@ def _arc_length(item: Comb) -> tuple[FloatArray, float]:
     """Arc length from the first sample to each, and the total."""
     s = np.concatenate([[0.0], np.cumsum((item.weights[:-1] + item.weights[1:]) / 2)])
     return s, max(float(s[-1]), 1e-12)
-
-
-def _length(contour: Contour) -> float:
-    return float(np.hypot(*np.diff(contour.points, axis=0).T).sum())
 
 
 def colour_legend(

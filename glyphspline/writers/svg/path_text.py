@@ -199,24 +199,16 @@ def comb_teeth(
             ends[k, 0], ends[k, 1] = np.floor(own[i, X] * power + half), np.floor(own[i, Y] * power + half)
             ends[k, 2] = np.floor((own[i, X] - reach * own[i, NX]) * power + half)
             ends[k, 3] = np.floor((own[i, Y] - reach * own[i, NY]) * power + half)
-            if k > offsets[c] and _same(ends, k, k - 1):
+            if k > offsets[c] and (ends[k] == ends[k - 1]).all():
                 continue
             cut[k], classes[k] = abs(strength) > LONGEST, -1
             if min(abs(strength), LONGEST) > least and (ends[k, 0] != ends[k, 2] or ends[k, 1] != ends[k, 3]):
                 classes[k] = SIDES + np.int64(np.rint(min(max(sides[c] * strength, -1.0), 1.0) * SIDES))
             k += 1
-        if k > offsets[c] + 1 and _same(ends, k - 1, offsets[c]):
+        if k > offsets[c] + 1 and (ends[k - 1] == ends[offsets[c]]).all():
             k -= 1  # the contour is closed
         offsets[c + 1] = k
     return ends[:k], classes[:k], cut[:k], offsets
-
-
-@compiled
-def _same(ends: FloatArray, i: int, j: int) -> bool:
-    same = True
-    for axis in range(4):
-        same &= ends[i, axis] == ends[j, axis]
-    return same
 
 
 @compiled
