@@ -13,7 +13,6 @@ import numpy as np
 
 from ..fitting.results import BOUNDS, SOLVED
 from ..types import FloatArray, rounded_up
-from ..writers.svg.document import document
 from . import FOLDER
 
 if TYPE_CHECKING:
@@ -85,7 +84,7 @@ def glyph_text(
         parts.append(f'"{name}":"{data}",')
     parts.append(f'"files":{as_json(links)},"contours":{as_json(known)}')
     parts.append(f',"masters":{as_json(masters)}}});\n' if masters else "});\n")
-    return document(parts)
+    return "".join(parts).encode()
 
 
 def along_axes(result: MastersResult) -> dict[str, Any]:

@@ -105,10 +105,12 @@ class Group(NamedTuple):
     """The polygons that are iterated together: several short ones in one block, or a long one in a row of blocks.
 
     Attributes:
+        size: numbers in an array of coordinates for a block.
         blocks, scratch: see the module. h: knot intervals of all of them, each with PAD more at either end.
         table, numbers: a row for each polygon; columns as above. ends: (4 SLOTS, d) four rows for each.
     """
 
+    size: int
     blocks: FloatArray
     scratch: FloatArray
     h: FloatArray
@@ -138,29 +140,17 @@ def whole_vectors(count: int) -> int:
 
 @inlined
 def lanes_used(group: Group, slots: int, b: int) -> int:
-    """Lanes of block b from the first vertex to the last one."""
-    table = group.table
-    if table[0, COUNT] > LANES:
-        return min(LANES, table[0, COUNT] - b * LANES)
-    return table[slots - 1, LANE] + table[slots - 1, COUNT]
-
-
-@inlined
-def pairs_size(d: int) -> int:
-    """Numbers in an array of coordinates for a block."""
-    return (d + 1) // 2 * PAIR
-
-
-@inlined
-def count_of_blocks(group: Group) -> int:
-    """Number of blocks of a group."""
-    return (group.table[0, COUNT] + LANES - 1) // LANES
+    """Lanes of block b from the first vertex to the last one, in whole vectors."""
+    used = group.table[slots - 1, LANE] + group.table[slots - 1, COUNT]
+    if group.table[0, COUNT] > LANES:
+        used = min(LANES, group.table[0, COUNT] - b * LANES)
+    return whole_vectors(used)
 
 
 @compiled
 def place(given: Given, found: Found, group: Group, at: Coordinates, slots: int) -> None:
     """Vertices, first control points, rates and weights of a group's polygons into their blocks; controls into N."""
-    d, size, count = given.points.shape[1], pairs_size(given.points.shape[1]), count_of_blocks(group)
+    d, size, count = given.points.shape[1], group.size, -(-group.table[0, COUNT] // LANES)
     for b in range(0, count, max(count - 1, 1)):  # the first and the last have lanes that no vertex uses
         for j in range(b * BLOCK, (b + 1) * BLOCK):
             group.blocks[j] = 0.0
@@ -227,7 +217,7 @@ def _place_ends(given: Given, found: Found, group: Group, q: int) -> None:
 @compiled
 def follow_ends(given: Given, group: Group, P: FloatArray, slots: int) -> None:
     """The control points beside the ends of open arcs, which follow their neighbours, and those of the ends."""
-    d, size, table = given.points.shape[1], pairs_size(given.points.shape[1]), group.table
+    d, size, table = given.points.shape[1], group.size, group.table
     for q in range(slots):
         n, first = table[q, COUNT], table[q, LANE] + HALO
         for end in range(2):
@@ -247,7 +237,7 @@ def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) ->
 
     An open arc has one control point more, n, kept beyond the last vertex in its block.
     """
-    d, size = given.points.shape[1], pairs_size(given.points.shape[1])
+    d, size = given.points.shape[1], group.size
     for q in range(slots):
         n, first = group.table[q, COUNT], group.table[q, LANE]
         inside = min(LANES, n - b * LANES)

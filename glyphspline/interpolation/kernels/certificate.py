@@ -31,26 +31,6 @@ CUT = 0.125
 
 
 @compiled
-def _proven_in_parts(c0: float, c1: float, c2: float, c3: float, c4: float, L: float, guard: float) -> bool:
-    """Whether the quartic exceeds ``guard`` between 0 and L: cut at an eighth, again and again towards 0.
-
-    Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way.
-    """
-    b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, c4, L)
-    for _ in range(6):
-        if min(c0, b1, b2, b3, b4) > guard:
-            return True
-        p0, p1, p2, p3 = c0 + CUT * (b1 - c0), b1 + CUT * (b2 - b1), b2 + CUT * (b3 - b2), b3 + CUT * (b4 - b3)
-        q0, q1, q2 = p0 + CUT * (p1 - p0), p1 + CUT * (p2 - p1), p2 + CUT * (p3 - p2)
-        r0, r1 = q0 + CUT * (q1 - q0), q1 + CUT * (q2 - q1)
-        s0 = r0 + CUT * (r1 - r0)
-        if not min(s0, r1, q2, p3, b4) > guard:
-            return False
-        b1, b2, b3, b4 = p0, q0, r0, s0
-    return False
-
-
-@compiled
 def _second_look(b: FloatArray, y: float, low: float, high: float) -> bool:
     """Whether the certificate holds between ``low`` and ``high`` after all, in parts, for rows E, V, W and Z (4, d).
 
@@ -65,9 +45,23 @@ def _second_look(b: FloatArray, y: float, low: float, high: float) -> bool:
     c0, c1, c2, c3, L = 2.0 * qa + pp, 2.0 * (qz + pa), 2.0 * pz + aa, 2.0 * az, high - low
     share = LOST * (np.sqrt(qq) + L * (np.sqrt(pp) + L * (np.sqrt(aa) + L * np.sqrt(zz))))
     guard = max(GUARD * (pp + L * L * (aa + L * L * zz)), qp * qp / (share * (share + 2.0 * np.sqrt(qq))))
-    return _proven_in_parts(c0, c1, c2, c3, zz, high - y, guard) and _proven_in_parts(
-        c0, c1, c2, c3, zz, low - y, guard
-    )
+    # Near a cusp Q falls from a small value at the footpoint before it rises, over a small part of the way. It is cut
+    # at an eighth, again and again towards y.
+    for length in (high - y, low - y):
+        b1, b2, b3, b4 = bernstein(c0, c1, c2, c3, zz, length)
+        for _ in range(6):
+            if min(c0, b1, b2, b3, b4) > guard:
+                break
+            p0, p1, p2, p3 = c0 + CUT * (b1 - c0), b1 + CUT * (b2 - b1), b2 + CUT * (b3 - b2), b3 + CUT * (b4 - b3)
+            q0, q1, q2 = p0 + CUT * (p1 - p0), p1 + CUT * (p2 - p1), p2 + CUT * (p3 - p2)
+            r0, r1 = q0 + CUT * (q1 - q0), q1 + CUT * (q2 - q1)
+            s0 = r0 + CUT * (r1 - r0)
+            if not min(s0, r1, q2, p3, b4) > guard:
+                return False
+            b1, b2, b3, b4 = p0, q0, r0, s0
+        else:
+            return False
+    return True
 
 
 @compiled

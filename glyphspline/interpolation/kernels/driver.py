@@ -24,9 +24,8 @@ from ..polygon import SMALLEST as SMALLEST_EXTENT
 from ..result import Found
 from .blocks import (
     BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST,
-    LIMIT, LOW, NATURAL, ONE, ORDER, PAD, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO,
-    UNCERTIFIED, UNIT, WIDTH, Coordinates, Given, Group, X, close_ranks, count_of_blocks, fill_halos,
-    follow_ends, lanes_used, pairs_size, place, whole_vectors,
+    LIMIT, LOW, NATURAL, ONE, ORDER, PAD, PAIR, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO,
+    UNCERTIFIED, UNIT, WIDTH, Coordinates, Given, Group, X, close_ranks, fill_halos, follow_ends, lanes_used, place,
 )  # fmt: skip
 from .certificate import GIVEN_UP, flagged
 from .certificate import SEARCHED as MARK
@@ -54,10 +53,10 @@ def run(
     """
     given, found = Given(*of_given), Found(*of_found)
     d, closed = given.points.shape[1], given.closed
-    size = pairs_size(d)
+    size = (d + 1) // 2 * PAIR
     count = memory.shape[0] // (BLOCK + 3 * size)
     group = Group(
-        memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
+        size, memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
         np.empty((SLOTS, TOTAL + 1), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
     )  # fmt: skip
     first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
@@ -139,7 +138,7 @@ def _iterate(
 def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: int) -> None:
     """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite, and its searches."""
     S, numbers, d = group.scratch, group.numbers, given.points.shape[1]
-    count, size, open_end = count_of_blocks(group), pairs_size(d), 0 if given.closed else 1
+    count, size, open_end = -(-group.table[0, COUNT] // LANES), group.size, 0 if given.closed else 1
     for q in range(slots):
         numbers[q, LARGEST] = 0.0
     if not given.closed:
@@ -148,7 +147,7 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
         fill_halos(given, group, at.P, slots, b)
         block, here, stop = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * size, (b + 1) * size
         P, Q, N = at.P[here:stop], at.Q[here:stop], at.N[here:stop]
-        m = whole_vectors(lanes_used(group, slots, b))
+        m = lanes_used(group, slots, b)
         bad, wild = seek(block, P, Q, N, S, m) if d == 2 else seek_space(block, P, Q, N, S, d, m)
         for q in range(slots if wild > 0 else 0):  # polygons with an error that is not finite are not searched
             first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
@@ -205,7 +204,7 @@ def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> N
     k, n = row[POLYGON], row[COUNT]
     start, first = given.offsets[k], given.offsets[k] if given.closed else given.offsets[k] + 2 * k + 1
     kept, points, u = found.kept[start:], given.points[start:], knots_of(given, found, k, n)
-    size, lane0, unit, length = pairs_size(d), row[LANE] + HALO, 1.0 / numbers[UNIT], 1.0 / numbers[KNOT_UNIT]
+    size, lane0, unit, length = group.size, row[LANE] + HALO, 1.0 / numbers[UNIT], 1.0 / numbers[KNOT_UNIT]
     for i in range(n):
         block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(lane0 + i % LANES)
         for axis in range(d):
@@ -280,12 +279,6 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
 
 
 @inlined
-def _power_of_two(x: float) -> float:
-    """The power of two that brings x > 0 between 1 and 2."""
-    return math.ldexp(1.0, 1 - math.frexp(x)[1])
-
-
-@inlined
 def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
     """The knots of polygon k."""
     first = given.offsets[k] + (k if given.closed else 0)
@@ -296,8 +289,8 @@ def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
 def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
     """Merge vertices of polygon k and compute its knots, by the rules of ``polygon.py``.
 
-    Returns the number kept, 0 if refused, and two scales, of lengths and of parameters, that bring extent and mean knot
-    interval near 1.
+    Returns the number kept, 0 if refused, and two scales, of lengths and of parameters: powers of two that bring extent
+    and mean knot interval near 1.
     """
     start, stop, closed = given.offsets[k], given.offsets[k + 1], given.closed
     points, kept = given.points[start:stop], found.kept[start:stop]
@@ -322,4 +315,4 @@ def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
             row[STATUS] = BAD_KNOTS
             return 0, 1.0, 1.0
         u[i] = value
-    return n, _power_of_two(extent), _power_of_two(u[-1] / n)
+    return n, math.ldexp(1.0, 1 - math.frexp(extent)[1]), math.ldexp(1.0, 1 - math.frexp(u[-1] / n)[1])

@@ -30,7 +30,7 @@ from .blocks import (
     STRIDE, SY, THIRD, THREE, TWO, X,
 )  # fmt: skip
 from .certificate import LOST
-from .newton_simd import GUARD, NEWTON_PASSES, least_quartic, least_rise, stepped
+from .newton_simd import GUARD, NEWTON_PASSES, least_quartic, least_rise, step
 
 # Own fields of the scratch block: products of D_{i-1} with itself and the next two, of F with itself and with D_{i-1}
 # to D_{i+2}; coefficients of D'/2 along the main side, and of |q'|²; the guard of rounding, and s²; what D_{i-1} to
@@ -153,7 +153,7 @@ def _newton(S: FloatArray, m: int) -> int:
     wide_vectors()
     pending = 0
     for j in range(TWO, np.uint64(m) + TWO):
-        y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
+        y = S[SY + j]
         h1, h2, h3, h4, h5 = S[H1 + j], S[H2 + j], S[H3 + j], S[H4 + j], S[H5 + j]
         h = fma(fma(fma(fma(fma(h5, y, h4), y, h3), y, h2), y, h1), y, S[H0 + j])
         bend = fma(fma(fma(fma(5.0 * h5, y, 4.0 * h4), y, 3.0 * h3), y, 2.0 * h2), y, h1)
@@ -161,12 +161,7 @@ def _newton(S: FloatArray, m: int) -> int:
         wz = S[WZ + j]
         speed = fma(fma(fma(3.0 * h5, y, 12.0 * wz), y, fma(6.0, S[VZ + j], 4.0 * S[WW + j])), y, 4.0 * S[VW + j])
         speed = fma(speed, y, S[VV + j])
-        new, settled = stepped(y, low, high, h, speed, bend, third)
-        frozen = done > 0.0
-        settled = frozen | settled
-        S[SY + j] = select(frozen, y, new)
-        S[DONE + j] = select(settled, 1.0, 0.0)
-        pending += select(settled, 0, 1)
+        pending += step(S, j, h, speed, bend, third)
     return pending
 
 

@@ -20,7 +20,7 @@ from ..intervals import END_MARGIN
 from ..result import Found
 from .blocks import (
     BLOCK, COUNT, FALLBACKS, HALO, HIGH, INTERVALS, LANE, LANES, LEAST, LOW, NATURAL, ONE, PAD, POLYGON, STRIDE, THREE,
-    TWO, WIDTH, Given, Group, X, count_of_blocks, lanes_used, whole_vectors,
+    TWO, WIDTH, Given, Group, X, lanes_used, whole_vectors,
 )  # fmt: skip
 from .newton_simd import cubic
 
@@ -174,7 +174,7 @@ def fill_intervals(given: Given, found: Found, group: Group, slots: int) -> None
     S = group.scratch
     for q in range(slots):
         group.table[q, FALLBACKS], group.numbers[q, LEAST] = 0, 1.0
-    for b in range(count_of_blocks(group)):
+    for b in range(-(-group.table[0, COUNT] // LANES)):
         block, at = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * LANES
         if given.variant == 2:
             for q in range(slots):
@@ -185,7 +185,7 @@ def fill_intervals(given: Given, found: Found, group: Group, slots: int) -> None
                 beyond = first + inside
                 for j in range(np.uint64(beyond), np.uint64(min(beyond + WIDTH + 2 * HALO, STRIDE))):
                     S[HIGHEST + j], S[LEVEL + j] = 0.0, 1.0
-            m = whole_vectors(lanes_used(group, slots, b))
+            m = lanes_used(group, slots, b)
             _crossings(S, PROBLEM_A, L1, m)
             _crossings(S, PROBLEM_B, L2, m)
         for q in range(slots):

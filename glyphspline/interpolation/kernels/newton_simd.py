@@ -121,33 +121,36 @@ def least_rise(slope: float, c0: float, c1: float, c2: float, c3: float, c4: flo
 
 
 @inlined
-def stepped(
-    y: float, low: float, high: float, slope: float, speed: float, bend: float, third: float
-) -> tuple[float, bool]:
-    """Newton's next estimate from y, in [low, high], with Chebyshev's term where the distance is convex; whether it may
-    be the last.
+def step(S: FloatArray, j: int, slope: float, speed: float, bend: float, third: float) -> int:
+    """Newton's next estimate of a vertex that has not converged, with Chebyshev's term where the distance is convex.
+
+    Returns 1 if it still has not.
 
     Args:
         slope, bend, third: half the first and second, and a quarter of the third derivative of the squared distance.
         speed: the square of it.
     """
+    y, low, high, frozen = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j] > 0.0
     convex = bend > 0.05 * speed
     steep = select(convex, bend, speed)
     steep = select(steep > 0.0, steep, 1.0)
     inverse = 1.0 / steep
-    step = slope * inverse
-    correction = step * third * inverse
+    plain = slope * inverse
+    correction = plain * third * inverse
     correction = select(correction < 0.5, correction, 0.5)
     correction = select(correction > -0.5, correction, -0.5)
     left = select(convex, correction * correction, 1.0)
     correction = select(convex, correction, 0.0)
-    new = y - fma(step, correction, step)
+    new = y - fma(plain, correction, plain)
     new = select(new > low, new, low)
     new = select(new < high, new, high)
     moved = new - y
     moved = select(moved > 0.0, moved, -moved)
     length = high - low
-    return new, (moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length)
+    settled = frozen | ((moved <= SETTLED_STEP * length) & (left * moved <= LEFT * length))
+    S[SY + j] = select(frozen, y, new)
+    S[DONE + j] = select(settled, 1.0, 0.0)
+    return select(settled, 0, 1)
 
 
 @inlined
@@ -207,19 +210,14 @@ def _newton(S: FloatArray, m: int) -> int:
     wide_vectors()
     pending = 0
     for j in range(TWO, np.uint64(m) + TWO):
-        y, low, high, done = S[SY + j], S[SLO + j], S[SHI + j], S[DONE + j]
+        y = S[SY + j]
         vx, vy, wx, wy, zx, zy = S[SVX + j], S[SVY + j], S[SWX + j], S[SWY + j], S[SZX + j], S[SZY + j]
         qx, px, ax = expanded(S[SEX + j], vx, wx, zx, y)
         qy, py, ay = expanded(S[SEY + j], vy, wy, zy, y)
         speed = dot(px, py, px, py)
         bend = fma(2.0, dot(qx, qy, ax, ay), speed)
         third = 3.0 * (dot(px, py, ax, ay) + dot(qx, qy, zx, zy))
-        new, settled = stepped(y, low, high, dot(qx, qy, px, py), speed, bend, third)
-        frozen = done > 0.0
-        settled = frozen | settled
-        S[SY + j] = select(frozen, y, new)
-        S[DONE + j] = select(settled, 1.0, 0.0)
-        pending += select(settled, 0, 1)
+        pending += step(S, j, dot(qx, qy, px, py), speed, bend, third)
     return pending
 
 

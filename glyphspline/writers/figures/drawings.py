@@ -9,7 +9,7 @@ import numpy as np
 
 from ...fitting.results import GlyphResult
 from ..settings import CURRENT, PLAIN_MAPS, Combs, ImageKind, Maps, Settings
-from ..svg.comb import SIDES, SOURCE, Teeth, colour_classes, curvature_scale, legend, palette, shown_by, teeth
+from ..svg.comb import SIDES, SOURCE, colour_classes, curvature_scale, legend, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
 from ..svg.path_data import Box, curves_data
 from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, ring, saved
@@ -67,6 +67,8 @@ def write_map(
 
 def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices: bool, in_corners: bool) -> None:
     """Draw the map onto matplotlib axes, y up in font units, with a colour bar in 1/em."""
+    from matplotlib.collections import LineCollection
+
     outline, whose = glyph.outline, shown_by(combs)
     shown = [contour.curve if whose == "result" else contour.source for contour in glyph.contours]
     curves = [contour.cubics() for contour in shown if len(contour)]
@@ -74,7 +76,11 @@ def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices
         axes.add_patch(patch)
     drawn = teeth(glyph, scale, whose, in_corners=in_corners)
     for part in drawn:
-        _draw_teeth(axes, part)
+        colours = [palette()[index + SIDES] for index in colour_classes(part.relative).tolist()]
+        strokes = list(np.stack([part.feet, part.tips], axis=1))
+        axes.add_collection(LineCollection(strokes, colors=colours, linewidths=0.5))
+        axes.plot(*ring(part.tips).T, color="black", alpha=0.45, linewidth=0.3)
+        axes.plot(*part.tips[part.cut].T, "k.", markersize=1)
     for part in teeth(glyph, scale, "source") if combs == "both" else ():
         axes.plot(*ring(part.tips).T, color=SOURCE, linewidth=0.6, linestyle=(0, (4, 2)))
     if vertices:
@@ -97,12 +103,3 @@ def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices
         bar.set_ticks([-reach, reach], labels=[f"{-reach:.3g}", f"{reach:.3g}"], fontsize=6)
     words = f"curvature{legend(combs, sum(int(part.cut.sum()) for part in drawn), reach)}"
     bar.set_label("\n".join(wrap(words, max(columns, 12))), fontsize=8)
-
-
-def _draw_teeth(axes: Any, part: Teeth) -> None:
-    from matplotlib.collections import LineCollection
-
-    colours = [palette()[index + SIDES] for index in colour_classes(part.relative).tolist()]
-    axes.add_collection(LineCollection(list(np.stack([part.feet, part.tips], axis=1)), colors=colours, linewidths=0.5))
-    axes.plot(*ring(part.tips).T, color="black", alpha=0.45, linewidth=0.3)
-    axes.plot(*part.tips[part.cut].T, "k.", markersize=1)

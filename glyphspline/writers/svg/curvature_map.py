@@ -23,7 +23,7 @@ from .comb import (
     shown_by,
     sides_and_corners,
 )  # fmt: skip
-from .document import data_attributes, document, em_box, head, id_prefix, number, title, union, view_box_value
+from .document import data_attributes, em_box, head, id_prefix, number, title, union, view_box_value
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
 WIDEST, STEP = 1.5, 0.02
@@ -139,7 +139,7 @@ def write_map(
         ' stroke-linejoin="round"'
     )
     name, named = f"{prefix}-map-title", f"Curvature of {title(outline, settings.title)}{drawn}"
-    return document([head(view_box_value(box, precision), name, named, attributes), *layers])
+    return "".join([head(view_box_value(box, precision), name, named, attributes), *layers]).encode()
 
 
 def _comb(
@@ -168,18 +168,14 @@ def _comb(
         data, at = comb_text(ends, classes, offsets, precision)
         parts = [data.tobytes()[a:b].decode() for a, b in pairwise(at.tolist())]
         if whose != shown_by(combs):
-            layers.append(f'<path class="source-comb" {_dashed(em)} d="{parts[-1]}"/>\n')
+            dashed = f'stroke-width="{_width(em, 2.4)}" stroke-dasharray="{_width(em, 10)} {_width(em, 5)}"'
+            layers.append(f'<path class="source-comb" stroke="{SOURCE}" {dashed} d="{parts[-1]}"/>\n')
             continue
         cut &= classes >= 0
         number_cut = int(cut.sum())
         parts.append(dots_text(ends[cut, 2:], precision).tobytes().decode())
         layers += [f'{begin}{part}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
     return [*layers, "</g>\n"], box, number_cut
-
-
-def _dashed(em: float) -> str:
-    """The look of the line through the tips of the source's comb."""
-    return f'stroke="{SOURCE}" stroke-width="{_width(em, 2.4)}" stroke-dasharray="{_width(em, 10)} {_width(em, 5)}"'
 
 
 @cache

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 from html import escape
 from typing import NamedTuple
@@ -80,7 +80,7 @@ def write_svg(result: GlyphResult, settings: Settings, path: PathData | None = N
     name = title(outline, settings.title)
     begin = head(value, f"{prefix}-title", name, data_attributes(outline, precision), shape)
     paint = painting(look, em, float(value.split()[3]))
-    return document([begin, f'<path id="{prefix}-outline" {paint} d="{path.text}"/>\n</svg>\n'])
+    return f'{begin}<path id="{prefix}-outline" {paint} d="{path.text}"/>\n</svg>\n'.encode()
 
 
 def write_source(result: GlyphResult, settings: Settings, path: PathData | None = None) -> bytes:
@@ -160,9 +160,8 @@ def polygon_document(glyph: GlyphResult, source: PathData | None = None, data: P
         data_attributes(outline, precision), ' overflow="visible"',
     )  # fmt: skip
     dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
-    return document([
-        begin,
-        f"<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
+    drawn = (
+        f"{begin}<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
         f'<g id="{prefix}-source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
         f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero" d="{source.text}"/></g>\n'
         f'<g id="{prefix}-polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
@@ -170,12 +169,8 @@ def polygon_document(glyph: GlyphResult, source: PathData | None = None, data: P
         f'<path stroke-width="{number(em / 100, 3)}" d="{dots}"/></g>\n'
         f'<g id="{prefix}-control" display="none" fill="none" stroke="#75c"'
         f' stroke-width="{number(em / 600, 3)}"><path d="{data.control.text}"/></g>\n</svg>\n'
-    ])  # fmt: skip
-
-
-def document(parts: Iterable[str]) -> bytes:
-    """A document from its parts, in UTF-8."""
-    return "".join(parts).encode()
+    )
+    return drawn.encode()
 
 
 def head(box: str, name: str, title: str, attributes: str = "", shape: str = "") -> str:

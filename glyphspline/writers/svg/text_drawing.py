@@ -10,7 +10,7 @@ import numpy as np
 from ...fitting.results import GlyphResult, end_to_end
 from ...typesetting.placed import Layout
 from ..settings import PLAIN, Appearance
-from .document import document, head, id_prefix, number, painting, shown_as, shown_box, text
+from .document import head, id_prefix, number, painting, shown_as, shown_box, text
 from .path_data import curves_data
 
 
@@ -53,17 +53,13 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     )  # fmt: skip
     for line, own in groupby(places, key=lambda place: place[1]):
         parts.append(f'<g id="line-{line}">\n')
-        parts.append(
-            "".join(
-                [
-                    f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
-                    for k, _, glyph, cluster, (x, y), angle in own
-                    if drawn[glyph]
-                ]
-            )
-        )
+        parts += [
+            f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
+            for k, _, glyph, cluster, (x, y), angle in own
+            if drawn[glyph]
+        ]
         parts.append("</g>\n")
-    return document([*parts, "</g>\n</svg>\n"])
+    return "".join([*parts, "</g>\n</svg>\n"]).encode()
 
 
 def _put(x: float, y: float, angle: float, precision: int) -> str:

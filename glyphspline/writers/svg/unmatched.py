@@ -8,7 +8,7 @@ import numpy as np
 
 from ...outlines.joins import joins
 from ...outlines.outline import Contour, Outline
-from .document import document, head, id_prefix, number, text, title, view_box_value
+from .document import head, id_prefix, number, text, title, view_box_value
 from .path_data import path_data
 
 CONTOURS = ("#d33", "#06c", "#082", "#a0a", "#b60", "#077")
@@ -56,7 +56,7 @@ def to_unmatched_svg(outlines: Sequence[Outline], reason: str = "") -> str:
     prefix = id_prefix(first.name, first.gid)
     begin = head(box, f"{prefix}-title", f"{len(outlines)} outlines of {title(first)}")
     group = f'<g font-family="sans-serif" font-size="{number(SIZE * em, 2)}" stroke-width="{number(em / 400, 3)}">\n'
-    return document([begin, group, *parts, words, "</g>\n</svg>\n"]).decode()
+    return "".join([begin, group, *parts, words, "</g>\n</svg>\n"])
 
 
 def _contour(contour: Contour, index: int, em: float) -> list[str]:
