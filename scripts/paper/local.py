@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from statistics import median
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -225,4 +226,4 @@ def picture(fast: dict[str, dict[str, float]], plain: dict[str, dict[str, float]
 
 def _is_flattening(name: str, times: dict[str, dict[str, float]]) -> bool:
     """Whether on the scale of this line all others would be flat."""
-    return min(times[name].values()) > 4 * max(max(times[other].values()) for other in times if other != name)
+    return median(times[name].values()) > 4 * max(max(times[other].values()) for other in times if other != name)
