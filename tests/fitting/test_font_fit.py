@@ -12,10 +12,11 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.cli.groups import for_fonts
-from glyphspline.curves.cubics import turns
+from glyphspline.curves.cubics import hidden_extrema, turns
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.fitting.sharp.font_fit import of_points, quadratic_points, stored_points
-from glyphspline.fitting.sharp.harmony import end_jump
+from glyphspline.fitting.sharp.font_curves import Limits, misses
+from glyphspline.fitting.sharp.font_fit import ONE, of_points, quadratic_points, stored_points
+from glyphspline.fitting.sharp.harmony import FIXED, Run, end_jump
 from glyphspline.outlines.contour_arrays import ContourArrays
 from glyphspline.types import FloatArray
 from glyphspline.writers.font.font_file import write_font
@@ -248,3 +249,23 @@ def test_a_truetype_font_of_cubics_is_within_the_tolerance(tmp_path: Path) -> No
         for one, other in zip(font.outline(name).contours, new.outline(name).contours, strict=True):
             a, b = (gs.sample(each, step=0.5) for each in (one, other))
             assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
+def test_no_extremum_is_hidden_inside_a_curve_that_the_source_has_at_a_node() -> None:
+    given = outlines(FONTS / "kouzan-gyosho.otf")
+    for outline, result in zip(given, gs.convert_many(given, OPTIONS), strict=True):
+        for contour in result.contours:
+            inside = [sum(map(hidden_extrema, np.rint(each.cubics()))) for each in (contour.curve, contour.source)]
+            assert inside[0] <= inside[1], outline.name
+
+
+def test_a_handle_may_move_by_as_much_as_the_tolerance() -> None:
+    """The curve itself moves by less than half of that."""
+    source = np.array([[[0, 0], [0, 10], [10, 30], [40, 30]], [[40, 30], [27, 20], [13, 10], [0, 0]]], dtype=np.float64)
+    moved = source[None, :1].copy()
+    moved[0, 0, 1, 1] += 1.0
+    kinds, places, none = np.full(2, FIXED), np.arange(2), np.zeros(1, dtype=np.int64)
+    run = Run(moved[0], none.astype(np.bool_), kinds, np.zeros((2, 2)), places, none, np.ones(2), False)
+    assert not misses(moved, run, source[None], 0, Limits(1.0, 1000.0, 4, ONE, ONE), 0.999).any()
+    moved[0, 0, 1, 1] += 3.0
+    assert misses(moved, run, source[None], 0, Limits(1.0, 1000.0, 4, ONE, ONE), 0.999).all()

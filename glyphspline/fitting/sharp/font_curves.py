@@ -19,9 +19,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import directions, length
+from ...curves.cubics import directions, hidden_extrema, length
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import NO_HANDLE, Joints
+from .corners import NO_HANDLE, SMOOTH_KINK, Joints
 from .cubics import fit_between, is_straight
 from .harmony import AXIS, FIXED, FREE, HELD, Run, end_jump, harmonise
 from .lattice import meet, round_run
@@ -49,8 +49,8 @@ CORNER = np.radians(12.5)
 KINK = np.radians(0.48)
 """Turn of a joint that a result may have where the source's is smaller."""
 
-BEYOND = 0.9e-3
-"""Of the em: how far a cubic may pass the ends of its span, where the source's segments do not."""
+BEYOND = 0.3e-3
+"""Of the em: how far a cubic may pass the ends of its span before it is rounded, where the source's segments do not."""
 
 STRAIGHT = 0.6e-3
 """Of the em: how far from its chord a stretch with a line is at least if a curve takes its place."""
@@ -266,7 +266,10 @@ def as_run(
 ) -> Run:  # fmt: skip
     """The r cubics of a run with what their nodes may do; cubics without a share are the source's, and held."""
     held, kind, T = np.zeros(r, dtype=np.bool_), np.full(r + 1, FREE), np.empty((r + 1, 2))
+    extrema = np.zeros(r, dtype=np.int64)
     for s in range(r):
+        for k in range(i + places[s], i + places[s + 1]):
+            extrema[s] += hidden_extrema(cubics[k % len(cubics)])
         one = places[s + 1] - places[s] == 1
         held[s] = one and (share[places[s]] == 0.0 or degrees[i + places[s]] == 1)
     for s in range(r + 1):
@@ -286,11 +289,11 @@ def as_run(
             T[s, 0], T[s, 1] = x / size, y / size
         elif upright[k]:
             kind[s] = AXIS
-    return Run(P[:r].copy(), held, kind, T, places[: r + 1].copy(), ease[places[: r + 1]], closed)
+    return Run(P[:r].copy(), held, kind, T, places[: r + 1].copy(), extrema, ease[places[: r + 1]], closed)
 
 
 @compiled
-def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits) -> BoolArray:
+def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits, share: float) -> BoolArray:
     """(r,) which cubics of a run are not certified within the tolerance of the source, in the whole design space.
 
     The run begins at joint i of the source. Every cubic is paired by itself with a stretch of the source.
@@ -305,8 +308,8 @@ def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits) 
         if run.closed:
             arc[::2], arc[1::2] = -np.inf, np.inf
     hints = (i + run.places).astype(np.float64)
-    bounds = certified(V, chain, hints, run.kind < AXIS, run.held, run.closed, other, arc, limits.tolerance)
-    return ~(bounds <= 0.999 * limits.tolerance)
+    enough = share * limits.tolerance
+    return ~(certified(V, chain, hints, run.kind < AXIS, run.held, run.closed, other, arc, enough) <= enough)
 
 
 @compiled
@@ -347,7 +350,7 @@ def fit_run(
             mark_joints(run, cubics[v], i, em, bad)
             found[v], jumps = run.P, jumps + jumps_in(run, em)
         mark_turns(found, run, cubics, joints, i, limits.mixes, bad)
-        bad |= misses(found, run, cubics, i, limits)
+        bad |= misses(found, run, cubics, i, limits, 0.98)
         good = True
         for s in range(r):
             if bad[s] and not run.held[s]:
@@ -377,16 +380,20 @@ def let_meet(
 ) -> None:  # fmt: skip
     """Let curvatures meet at single nodes of a run on the grid, (1, r, 4, 2), where that is certified."""
     r, m, em = P.shape[1], cubics.shape[1], limits.em
-    share, room, old = np.ones(len(start) + 1), np.empty((2, 250, 8)), np.empty((2, 4, 2))
+    share, room, old = np.ones(len(start) + 1), np.empty((2, 1225, 8)), np.empty((2, 4, 2))
     run = as_run(cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], share, share)
     for q in range(0 if closed else 1, r):
         a = (q - 1) % r
-        if a == q or end_jump(run.P[a], run.P[q], em) <= 0.1 or joint_turn(run.P[a : a + 1], run.P[q : q + 1]) > KINK:
+        if (
+            a == q
+            or end_jump(run.P[a], run.P[q], em) <= 0.1
+            or joint_turn(run.P[a : a + 1], run.P[q : q + 1]) > SMOOTH_KINK
+        ):
             continue
         may = True
         for s in (a, q):
             k = places[s]
-            may = may and (places[s + 1] > k + 1 or degrees[(i + k) % m] > 1) and start[(i + k) % m] < 2
+            may = may and (places[s + 1] > k + 1 or degrees[(i + k) % m] > 1) and start[(i + k) % m] < 4
         old[0], old[1] = run.P[a], run.P[q]
         if not may or not meet(run, q, joints, i, limits.tolerance, em, room):
             continue
@@ -394,11 +401,10 @@ def let_meet(
         run.held[:] = True
         run.held[a] = run.held[q] = False
         now = run.P.copy().reshape((1, r, 4, 2))
-        bad |= misses(now, run, cubics, i, limits)
+        bad |= misses(now, run, cubics, i, limits, 0.999)
         for side in range(2):
             s = q if side else a
-            beyond = passes(run.P[s]) > max(passes(old[side]), 0.5 * BEYOND * em)
-            bad[s] = bad[s] or beyond or (crosses_handles(run.P[s]) and not crosses_handles(old[side]))
+            bad[s] = bad[s] or (crosses_handles(run.P[s]) and not crosses_handles(old[side]))
         if bad[a] or bad[q]:
             run.P[a], run.P[q] = old[0], old[1]
     P[0] = run.P
@@ -418,12 +424,14 @@ def on_grid(cubics: FloatArray, degrees: IntArray) -> bool:
 
 @compiled
 def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, bad: BoolArray) -> None:
-    """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may not."""
+    """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may
+    not, and those with new extrema inside."""
     r, m, P = len(run.P), len(cubics), run.P
     for s in range(r):
         alone = run.places[s + 1] - run.places[s] == 1
         if crosses_handles(P[s]):
             bad[s] = bad[s] or not alone or not crosses_handles(cubics[(i + run.places[s]) % m])
+        bad[s] = bad[s] or hidden_extrema(P[s]) > run.extrema[s]
     for s in range(0 if run.closed else 1, r):
         k, a = (i + run.places[s]) % m, s - 1 if s > 0 else r - 1
         wrong = end_jump(P[a], P[s], em) > max(end_jump(cubics[k - 1], cubics[k], em) + 0.02, 0.1)
@@ -474,9 +482,14 @@ def jumps_of(cubics: FloatArray, degrees: IntArray, i: int, j: int, closed: bool
 
 @compiled
 def fit_contour(
-    cubics: FloatArray, degrees: IntArray, joints: Joints, start: IntArray, limits: Limits
-) -> tuple[FloatArray, IntArray, IntArray, BoolArray]:
+    cubics: FloatArray, degrees: IntArray, joints: Joints, start: IntArray, limits: Limits, fresh: BoolArray,
+    last: FloatArray, last_nodes: IntArray,
+) -> tuple[FloatArray, IntArray, IntArray, BoolArray]:  # fmt: skip
     """A contour (K, m, 4, 2) that begins at a cut, if it has any.
+
+    Args:
+        fresh: (m,) segments that are to be fitted. Runs without any are those of ``last`` (K, r', 4, 2), which begin at
+            the joints ``last_nodes``, in order.
 
     Returns:
         (K, r, 4, 2) its lines and cubics; (r,) their degrees; (r + 1,) the joints at which they begin and end; (r,)
@@ -498,6 +511,9 @@ def fit_contour(
             whole = whole and on_grid(cubics[v, i:j], degrees[i:j])
         if j == i + 1 and not closed and (degrees[i] == 1 or whole):
             run, own = cubics[:, i:j].copy(), np.array([i, j])
+        elif not fresh[i:j].any():
+            a, b = np.searchsorted(last_nodes, i), np.searchsorted(last_nodes, j)
+            run, own = last[:, a:b].copy(), np.append(last_nodes[a:b], j)
         else:
             run, own = fit_run(cubics, degrees, joints, upright, i, j, closed, start, limits)
         for s in range(run.shape[1]):

@@ -33,18 +33,35 @@ GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
 """As how many tries the finding of a check counts, in each round; beyond ``KEPT`` the contour stays as it is."""
 
 
+class Fitted(NamedTuple):
+    """Contours fitted, in steps of the grid.
+
+    Attributes:
+        cubics: (K, r, 4, 2) in K masters. nodes: (r,) joints of the source at which these begin. offsets: (C + 1,).
+    """
+
+    cubics: FloatArray
+    nodes: IntArray
+    offsets: IntArray
+
+
 @compiled
 def fit_contours(
-    cubics: FloatArray, degrees: IntArray, offsets: IntArray, tries: IntArray, settings: Settings, limits: Limits
-) -> tuple[FloatArray, IntArray, IntArray, FloatArray, BoolArray]:
+    cubics: FloatArray, degrees: IntArray, offsets: IntArray, tries: IntArray, settings: Settings, limits: Limits,
+    fresh: BoolArray, last: Fitted,
+) -> tuple[Fitted, IntArray, FloatArray, BoolArray]:  # fmt: skip
     """All contours (K, m, 4, 2) fitted, each from its own first joint on, if that is still a node.
 
+    Args:
+        fresh: (m,) segments whose tries are not those of the last fit. Runs without any stay as they were in it.
+
     Returns:
-        (K, r, 4, 2) cubics, (r,) degrees, (C + 1,) offsets; (r + C, 2) anchors as in
-        :func:`...curves.pairing.pair_stretches`; (r,) whether a segment begins inside a run.
+        What was fitted; (r,) degrees; (r + C, 2) anchors as in :func:`...curves.pairing.pair_stretches`; (r,) whether
+        a segment begins inside a run.
     """
     masters, most, V, count = len(cubics), len(degrees), len(limits.corners), 0
     found, kinds, ends = np.empty((masters, most, 4, 2)), np.empty(most, np.int64), np.zeros(len(offsets), np.int64)
+    numbers = np.empty(most, np.int64)
     anchors, inner = np.empty((most + len(offsets), 2)), np.zeros(most, dtype=np.bool_)
     for c in range(len(offsets) - 1):
         a, b = offsets[c], offsets[c + 1]
@@ -62,7 +79,15 @@ def fit_contours(
                 chain = np.concatenate((source[:, k:], source[:, :k]), axis=1)
                 own, held = np.roll(own, -k), np.roll(held, -k)
                 joints = find_joints(chain, own, settings)
-            run, types, nodes, inside = fit_contour(chain, own, joints, held, limits)
+            old, n = last.cubics[:, last.offsets[c] : last.offsets[c + 1]], last.offsets[c + 1] - last.offsets[c]
+            before, at = np.empty((masters, n, 4, 2)), (last.nodes[last.offsets[c] : last.offsets[c + 1]] - k) % m
+            order = np.argsort(at)
+            for v in range(masters):
+                for s in range(n):
+                    before[v, s] = old[v, order[s]]
+            run, types, nodes, inside = fit_contour(
+                chain, own, joints, held, limits, np.roll(fresh[a:b], -k), before, at[order]
+            )
         # Back to the first joint of the source, or the next node after it.
         r, first = run.shape[1], 0
         while first < r and nodes[first] + k < m:
@@ -72,6 +97,7 @@ def fit_contours(
             for v in range(masters):
                 found[v, count + s] = run[v, q]
             kinds[count + s], inner[count + s] = 1 if types[q] == 1 else 3, inside[q]
+            numbers[count + s] = (nodes[q] + k) % m
             anchors[count + c + s, 0], anchors[count + c + s, 1] = s, (nodes[q] + k) % m
         places = anchors[count + c : count + c + r, 1]
         hints, outline = places.copy(), mixed(limits.corners, source)
@@ -89,20 +115,22 @@ def fit_contours(
         anchors[count + c + r, 0], anchors[count + c + r, 1] = r, places[0] + m
         count += r
         ends[c + 1] = count
-    return found[:, :count].copy(), kinds[:count], ends, anchors[: count + len(offsets) - 1], inner[:count]
+    result = Fitted(found[:, :count].copy(), numbers[:count], ends)
+    return result, kinds[:count], anchors[: count + len(offsets) - 1], inner[:count]
 
 
 class FontCurve(NamedTuple):
     """A contour as fonts store it, the same segments in K masters.
 
     Attributes:
-        curves: in each master. inner: (r,) whether a segment begins inside a run.
+        curves: in each master. fitted: the same on the grid. inner: (r,) whether a segment begins inside a run.
         anchors: (r + 1, 2) places on it and on its source that belong together.
         bound: certified distance from the source, of masters in the whole design space. gap: the largest one seen; of
             masters it is not looked for.
     """
 
     curves: tuple[ContourArrays, ...]
+    fitted: Fitted
     inner: BoolArray
     anchors: FloatArray
     bound: float
@@ -138,12 +166,16 @@ def fit_for_fonts(
     """
     source = sources[0]
     tries = np.zeros(len(source.degrees), dtype=np.int64)
-    found = _fitted(sources, tries, corners, mixes, options, tolerance, share, em)
-    expected = [_findings(master, em) for master in sources]
+    nothing = Fitted(np.empty((len(sources), 0, 4, 2)), tries[:0], np.zeros(len(source.offsets), dtype=np.int64))
+    found = _fitted(sources, tries, tries == 0, nothing, corners, mixes, options, tolerance, share, em)
+    expected = [
+        np.concatenate([_findings(master, em), _findings(master.rounded(options.precision), em)]) for master in sources
+    ]
     for level in GATES:
         wrong, places = np.zeros(len(tries), dtype=np.bool_), [each.anchors for each in found]
         for v, (master, known) in enumerate(zip(sources, expected, strict=True)):
-            wrong |= _new_findings(master, known, joined([each.curves[v] for each in found]), places, em)
+            now = joined([each.curves[v] for each in found]).rounded(options.precision)
+            wrong |= _new_findings(master, known, now, places, em)
         outside = [c for c, each in enumerate(found) if not each.bound <= tolerance]
         for c in outside:
             wrong[source.offsets[c] : source.offsets[c + 1]] = True
@@ -154,22 +186,27 @@ def fit_for_fonts(
             tries[source.offsets[c] : source.offsets[c + 1]] = KEPT
         if (tries == before).all():
             break
-        mine = np.concatenate([tries[source.offsets[c] : source.offsets[c + 1]] for c in which])
-        chosen = [master.chosen(which) for master in sources]
-        again = _fitted(chosen, mine, corners, mixes, options, tolerance, share, em)
+        own = np.concatenate([np.arange(source.offsets[c], source.offsets[c + 1]) for c in which])
+        chosen, parts = [master.chosen(which) for master in sources], [found[c].fitted for c in which]
+        last = Fitted(
+            np.concatenate([each.cubics for each in parts], axis=1), np.concatenate([each.nodes for each in parts]),
+            np.cumsum([0, *(len(each.nodes) for each in parts)]),
+        )  # fmt: skip
+        fresh = tries[own] != before[own]
+        again = _fitted(chosen, tries[own], fresh, last, corners, mixes, options, tolerance, share, em)
         for c, each in zip(which, again, strict=True):
             found[c] = each
     return found
 
 
 def _fitted(
-    sources: Sequence[ContourArrays], tries: IntArray, corners: FloatArray, mixes: FloatArray, options: Options,
-    tolerance: float, share: float, em: float,
+    sources: Sequence[ContourArrays], tries: IntArray, fresh: BoolArray, last: Fitted, corners: FloatArray,
+    mixes: FloatArray, options: Options, tolerance: float, share: float, em: float,
 ) -> list[FontCurve]:  # fmt: skip
     """Contours fitted and certified.
 
     Args:
-        tries: (m,) of each segment that were in vain; ``KEPT`` keeps it.
+        tries: (m,) of each segment that were in vain; ``KEPT`` keeps it. fresh, last: see :func:`fit_contours`.
     """
     scale, source, V = 10.0**options.precision, sources[0], len(corners)
     near = scale * share * tolerance
@@ -179,10 +216,11 @@ def _fitted(
     )  # fmt: skip
     cubics = np.stack([all_cubics(master) for master in sources])
     limits = Limits(near, em * scale, settings.chain_rounds, corners, mixes)
-    found, degrees, offsets, anchors, inner = fit_contours(
-        cubics * scale, source.degrees, source.offsets, tries, settings, limits
+    fitted, degrees, anchors, inner = fit_contours(
+        cubics * scale, source.degrees, source.offsets, tries, settings, limits, fresh, last
     )
-    curves = [chains(each / scale, degrees, offsets) for each in found]
+    offsets = fitted.offsets
+    curves = [chains(each / scale, degrees, offsets) for each in fitted.cubics]
     written = np.stack([all_cubics(curve.rounded(options.precision)) for curve in curves])
     ends = offsets + np.arange(len(offsets))
     bounds, gaps = np.full((2, len(inner)), np.nan)
@@ -198,7 +236,9 @@ def _fitted(
         gaps[:] = np.nan
     return [
         FontCurve(
-            tuple(curve.part(c, c + 1) for curve in curves), inner[a:b], anchors[a + c : b + c + 1],
+            tuple(curve.part(c, c + 1) for curve in curves),
+            Fitted(fitted.cubics[:, a:b], fitted.nodes[a:b], np.array([0, b - a])), inner[a:b],
+            anchors[a + c : b + c + 1],
             float(bounds[a:b].max()), float(gaps[a:b].max()),
         )
         for c, (a, b) in enumerate(pairwise(offsets.tolist()))
@@ -229,7 +269,8 @@ def _turning(contours: ContourArrays) -> FloatArray:
     for c in range(contours.num_contours):
         part = contours.part(c, c + 1)
         line = part.degrees == 1
-        joints = np.flatnonzero((np.abs(turns(all_cubics(part), NO_HANDLE)) > KINKED) & ~(line & np.roll(line, 1)))
+        sizes = np.abs(turns(all_cubics(part), NO_HANDLE))
+        joints = np.flatnonzero((sizes > KINKED) & (sizes < CORNER) & ~(line & np.roll(line, 1)))
         found.append(rows(KINK, c, joints, 0.0))
     return np.concatenate(found)
 

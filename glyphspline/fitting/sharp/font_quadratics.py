@@ -525,7 +525,7 @@ def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tup
         as_cubic(q, s, P[s])
     hints = joints.places[q.lo].copy()
     hints[0], hints[R], stays[0] = i, j, True
-    far = certified(1, P, hints, stays, np.zeros(R, np.bool_), False, given.cubics, np.empty(0), tolerance)
+    far = certified(1, P, hints, stays, np.zeros(R, np.bool_), False, given.cubics, np.empty(0), 0.999 * tolerance)
     bad = ~(far <= 0.999 * tolerance)
     for s in range(R):
         for axis in range(2):

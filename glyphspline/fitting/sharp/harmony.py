@@ -47,6 +47,7 @@ class Run(NamedTuple):
         P: (r, 4, 2) the cubics. held: (r,) those that do not move.
         kind: (r + 1,) what the nodes may do. T: (r + 1, 2) unit tangents of nodes that are not corners.
         places: (r + 1,) joints of the outline, counted from the first, at which the nodes were.
+        extrema: (r,) most extrema inside each cubic: as many as the source's segments have there.
         ease: (r + 1,) weights of the nodes' equations of curvature. closed: whether the last node is the first again.
     """
 
@@ -55,6 +56,7 @@ class Run(NamedTuple):
     kind: IntArray
     T: FloatArray
     places: IntArray
+    extrema: IntArray
     ease: FloatArray
     closed: bool
 

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import length
+from ...curves.cubics import hidden_extrema, length
 from ...types import FloatArray
 from .corners import Joints
 from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, arriving_curvature, end_jump, leaving_curvature
@@ -30,6 +30,8 @@ TURN, JUMP = 0.0080, 0.095
 TURN_PRICE, JUMP_PRICE = 100.0, 2.0
 """What a joint beyond these costs, in mean squares of distance at the tolerance."""
 
+HIDDEN_PRICE = 10.0
+"""The same of an extremum inside a cubic that the source has not: rounding alone makes some beside an extreme node."""
 
 MET, NO_KINK, FAREST = 0.095, np.radians(0.45), 0.5
 """Jump of curvature and turn of a joint at which curvatures are made to meet; and the mean squared distance, in
@@ -120,6 +122,9 @@ def cost_at(run: Run, k: int, before: int, after: int, measure: Measure, em: flo
     At least ``least`` where it would be that much.
     """
     r, total = len(run.P), joint_cost(run, k, em, least)
+    for s in (before, after):
+        if s >= 0 and total < least and hidden_extrema(run.P[s]) > run.extrema[s]:
+            total += HIDDEN_PRICE
     for s in (before, after):
         if s >= 0 and total < least:
             total += squares(run.P[s], measure.exact[s], measure.own[s], measure.rest[s])
@@ -258,7 +263,7 @@ def side_places(
         level: the axis on which the handle there stays level; -1 if it may turn. form, exact, rest: see
             :func:`.nearness.squares`. far: the vector in which the next cubic begins at the other end, its curvature
             there, and whether that end's handle stays.
-        found: (225, 8) receives the cost, the curvature, the handle's vector, and both points.
+        found: (1225, 8) receives the cost, the curvature, the handle's vector, and both points.
 
     Returns:
         Their number.
@@ -268,10 +273,10 @@ def side_places(
     ux, uy, beyond, stays = far
     x, y = p[b, 0] - p[f, 0], p[b, 1] - p[f, 1]
     was, jumped = abs(np.arctan2(x * uy - y * ux, -(x * ux + y * uy))), False
-    for step in range(-1, 9):
-        if step == 4 or (stays and step >= 0):
+    for step in range(-1, 25):
+        if step == 12 or (stays and step >= 0):
             continue
-        u, v = (0.0, 0.0) if step < 0 else (step % 3 - 1.0, step // 3 - 1.0)
+        u, v = (0.0, 0.0) if step < 0 else (step % 5 - 2.0, step // 5 - 2.0)
         own[b, 0], own[b, 1] = p[b, 0] + u, p[b, 1] + v
         bx, by = own[b, 0] - p[f, 0], own[b, 1] - p[f, 1]
         if step >= 0:
@@ -280,13 +285,13 @@ def side_places(
                 continue
         size = max(length(bx, by), 1e-9)
         own[n, 0], own[n, 1] = p[n, 0] + dx, p[n, 1] + dy
-        for code in range(-1, 9 if level >= 0 else 25):
+        for code in range(-1, 13 if level >= 0 else 49):
             if level >= 0:
-                u, v = (0.0, 0.0) if code < 0 else (code - 4.0, 0.0)
+                u, v = (0.0, 0.0) if code < 0 else (code - 6.0, 0.0)
                 u, v = (v, u) if level == 0 else (u, v)
                 u, v = u + dx, v + dy
             else:
-                u, v = (0.0, 0.0) if code < 0 else (code % 5 - 2.0, code // 5 - 2.0)
+                u, v = (0.0, 0.0) if code < 0 else (code % 7 - 3.0, code // 7 - 3.0)
             if code < 0 and (step >= 0 or dx != 0.0 or dy != 0.0):
                 continue
             own[h, 0], own[h, 1] = p[h, 0] + u, p[h, 1] + v
@@ -302,7 +307,7 @@ def side_places(
             if jump and not jumped and beyond < np.inf:
                 continue
             cost = squares(own, exact, form, rest)
-            if cost < FAREST:
+            if cost < FAREST and hidden_extrema(own) <= run.extrema[s]:
                 found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / length(ax, ay) ** 3
                 found[count, 2], found[count, 3] = ax, ay
                 found[count, 4], found[count, 5] = own[h, 0], own[h, 1]
@@ -329,7 +334,7 @@ def meet(run: Run, k: int, joints: Joints, i: int, tolerance: float, em: float, 
     """Let curvatures meet at a node, by the nearest places of it, its handles, and the handles beyond these.
 
     Args:
-        room: (2, 250, 8) of work.
+        room: (2, 1225, 8) of work.
 
     Returns:
         Whether there are such places.
