@@ -137,8 +137,8 @@ def pair_span(
         other: (m V, 4, 2); y, y_end: places on it.
         arc: empty, or (4,); see :func:`pair_instances`.
         coarse: search the segment for the points nearest to the other's joints; or else begin from a proportional
-            guess, and halve every pair once, so that a gap is seen between its ends. Of an arc, refine nothing once a
-            pair is beyond ``enough``.
+            guess, and halve every pair once, so that a gap is seen between its ends; of an arc, across it. Coarsely, no
+            gap is seen of an arc, and nothing is refined once a pair is beyond ``enough``.
         enough: bounds up to this are not refined; nor are bounds within ``sharpness`` of a larger gap already seen.
         work, marks: of :func:`room_for`.
         found: the bound, without rounding; the largest distance seen between paired points; and its place on the
@@ -171,20 +171,24 @@ def pair_span(
                 A, B = work[0, v], work[1, v]
                 first, end = max(first, apart(A, B, 0)), max(end, apart(A, B, 3))
                 inner = max(inner, max(apart(A, B, 1), apart(A, B, 2)))
-            if not slips:
-                if first > gap:
-                    gap, where = first, low
-                if end > gap:
-                    gap, where = end, high
             most, limit = max(inner, max(first, end)), max(enough, bound)
+            if slips:
+                first = end = 0.0
+                for v in range(row, row if coarse else row + V):
+                    A, B = work[0, v], work[1, v]
+                    first, end = max(first, _across(A, B, 0)), max(end, _across(A, B, 3))
+            if first > gap:
+                gap, where = first, low
+            if end > gap:
+                gap, where = end, high
             if gap > enough:
                 limit = max(limit, gap + sharpness)
             if slips and most > limit:
                 one, two, scratch = work[0, row : row + V], work[1, row : row + V], work[0, (DEEPEST + 2) * V :]
                 most = min(most, slip_bound(one, two, chain, other, marks[top], arc, limit, scratch))
             if depth >= least and (most <= limit or depth >= DEEPEST or halvings >= MOST_HALVINGS):
-                if slips and most > limit:
-                    enough, where = np.inf if coarse else enough, low
+                if slips and coarse and most > limit:
+                    enough = np.inf
                 bound = max(bound, most)
                 top -= 1
                 continue
@@ -202,6 +206,15 @@ def pair_span(
             top += 1
         x, y = cut, stop
     found[0], found[1], found[2] = bound, gap, where
+
+
+@inlined
+def _across(A: FloatArray, B: FloatArray, k: int) -> float:
+    """Distance of an end of a cubic, Bézier point k, from the tangent of another one there; 0 where it has none."""
+    i = k - 1 if k > 0 else 0
+    x, y = B[i + 1, 0] - B[i, 0], B[i + 1, 1] - B[i, 1]
+    size = length(x, y)
+    return abs(x * (A[k, 1] - B[k, 1]) - y * (A[k, 0] - B[k, 0])) / size if size > 0 else 0.0
 
 
 @inlined

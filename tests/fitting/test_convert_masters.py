@@ -295,7 +295,7 @@ def test_smooth_masters_that_agree_need_no_more_than_one() -> None:
 def test_lines_that_stay_in_a_smooth_fit_are_counted_and_said() -> None:
     """So closely no closed curve is certified, and the contour stays as it is: lines and corners too."""
     masters = masters_of(stem(100, 60), stem(220, 120), degrees=[1, 3, 1, 1])
-    result = gs.convert_masters(masters, gs.Options(corners="smooth", tolerance=1e-4))
+    result = gs.convert_masters(masters, gs.Options(corners="smooth", tolerance=1e-8))
     for ours, own in zip(result.contours[0].curve.points, masters.contours[0].points, strict=True):
         assert sorted(ours.round(6).tolist()) == sorted(own.round(6).tolist())
     assert result.contours[0].kept == 4

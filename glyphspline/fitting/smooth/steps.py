@@ -85,8 +85,7 @@ class Trial(NamedTuple):
 
     Attributes:
         which: (k,) numbers of the contours. places, offsets, points: the vertices.
-        bounds, gaps, worst: certified bounds of the spans, gaps seen, and the places of these on the outline. In
-            several instances no gaps are seen, and are the bounds.
+        bounds, gaps, worst: certified bounds of the spans, gaps seen, and the places of these on the outline.
         ends: where the stretch of outline that a span is paired with begins; those of part i begin at
             ``offsets[i] + i``, and the first is repeated a lap later.
     """
@@ -131,7 +130,7 @@ def measured(
                 # Sharpness of the bounds during the search, as a share of the distance allowed.
                 V, spans, j, 0.0, 1.0, outline, y, y_end, arc, False, near - rounding, 0.1 * near, work, marks, found,
             )  # fmt: skip
-            bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1 if V == 1 else 0], found[2]
+            bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1], found[2]
     return Trial(which, places, offsets, points, bounds, gaps, worst, ends)
 
 
