@@ -3,15 +3,17 @@
 The plain bound of :mod:`.pairing` charges a result for running along its outline at another pace, which instances do
 in different ways, and no pairing of places suits all of them. The *slip* bound does not.
 
-Let A and B be a pair of sections in V instances, e the direction of their chords, the same for all instances,
-D = A - B, and σ the largest ``|e·D|``. The chain of B is followed beyond both ends of the section until it extends by σ
-along e in every instance. Let all its derivatives h have e·h > 0. A point A(t) lies at the height along e of some point
-B(s) of the chain, and the way from B(t) to there is the integral of the h(ξ) in between. Hence, for some of these,
+Let A and B be a pair of sections in V instances, e the direction of their chords, the same for all instances, and
+D = A - B. The chain of B is followed beyond the end of the section until it extends along e, in each instance, by the
+largest e·D there, and beyond its start by the largest -e·D: so far do mixed instances get, too. Then a point A(t) lies
+at the height along e of some point B(s) of the chain. Let h be the way B(s) - B(t) from there:
 
-    |A(t) - B(s)| ≤ |h(ξ) × D(t)| / e·h(ξ)
+    |A(t) - B(s)| = |h × D(t)| / e·h
 
-In an instance with weights λ the numerator is Σ λ_u λ_v h_u(ξ) × D_v(t), and the denominator Σ λ_u e·h_u(ξ). With the
-Bézier points h_ui and D_vk of a part of the chain and of the section, the quotient is a mean of
+In an instance with weights λ the numerator is Σ λ_u λ_v h_u × D_v(t), and the denominator Σ λ_u e·h_u. The way inside
+the section is a mean of the Bézier points of the derivative, and the way from the section's end to a part of the chain
+one of those of the part. With these, h_ui, and D_vk of the section, let all e·h_ui be positive. The quotient is a mean
+of
 
     q_uv = |h_ui × D_vk + h_vi × D_uk| / (e·h_ui + e·h_vi)
 
@@ -51,7 +53,7 @@ def slip_bound(
         result, source: the chains (n V, 4, 2) of A and B. places: first and last place of A, and of B.
         arc: likewise of the arc, infinite for closed curves. scratch: (SCRATCH V, 4, 2).
     """
-    V, D, ex, ey, reach = len(A), scratch[: len(A)], 0.0, 0.0, 0.0
+    V, D, ex, ey = len(A), scratch[: len(A)], 0.0, 0.0
     for v in range(V):
         ex += A[v, 3, 0] - A[v, 0, 0] + B[v, 3, 0] - B[v, 0, 0]
         ey += A[v, 3, 1] - A[v, 0, 1] + B[v, 3, 1] - B[v, 0, 1]
@@ -59,23 +61,27 @@ def slip_bound(
     if size <= 0.0:
         return np.inf
     ex, ey = ex / size, ey / size
+    reach = np.zeros(
+        (3, V)
+    )  # how far A's points are behind B's, and before them, in each instance; and as far as can be
+    reach[2] = np.inf
     for v in range(V):
         for k in range(4):
             D[v, k, 0], D[v, k, 1] = A[v, k, 0] - B[v, k, 0], A[v, k, 1] - B[v, k, 1]
-            reach = max(reach, abs(ex * D[v, k, 0] + ey * D[v, k, 1]))
-    slip = np.zeros((2, 4))
-    slip[:, 2] = np.inf
-    if not (_add_part(A, D, ex, ey, slip[0], enough) and _add_part(B, D, ex, ey, slip[1], enough)):
+            ahead = ex * D[v, k, 0] + ey * D[v, k, 1]
+            reach[0, v], reach[1, v] = max(reach[0, v], -ahead), max(reach[1, v], ahead)
+    slip, inside = np.zeros((2, 3)), np.empty((0, 4, 2))
+    if not (_add_part(A, D, ex, ey, inside, slip[0], enough) and _add_part(B, D, ex, ey, inside, slip[1], enough)):
         return np.inf
     for side in range(2):
         x, y, x_end, y_end = places[side], places[2 + side], arc[side], arc[2 + side]
-        good, ended = _follow(source, D, side, y, y_end, reach, ex, ey, slip[1], enough, scratch)
+        good, ended = _follow(source, D, side, y, y_end, reach[side], ex, ey, slip[1], enough, scratch)
         if not good:
             return np.inf
-        far = np.inf if ended else reach
+        far = reach[2 if ended else 1 - side]
         good, also = _follow(result, D, side, x, x_end, far, ex, ey, slip[0], enough, scratch)
         if good and also and not ended:
-            good, _ = _follow(source, D, side, y, y_end, np.inf, ex, ey, slip[1], enough, scratch)
+            good, _ = _follow(source, D, side, y, y_end, reach[2], ex, ey, slip[1], enough, scratch)
         if not good:
             return np.inf
     return max(_one_way(slip[0], V), _one_way(slip[1], V))
@@ -84,43 +90,52 @@ def slip_bound(
 @inlined
 def _one_way(slip: FloatArray, V: int) -> float:
     """The bound in one direction, from what :func:`_add_part` gathered."""
-    alone, mixed, ratio = slip[0], slip[1], slip[3] / slip[2]
+    alone, mixed, ratio = slip[0], slip[1], slip[2]
     share = 2 * np.sqrt(ratio) / (V * (1 + ratio))
     return alone if mixed <= alone else share * alone + (1 - share) * mixed
 
 
 @compiled
-def _add_part(b: FloatArray, D: FloatArray, ex: float, ey: float, slip: FloatArray, enough: float) -> bool:
-    """Take a part (V, 4, 2) of the chain into the largest q_uu and q_uv, and the least and largest e·h; False unless
-    all e·h are positive and the slip bound is still small ``enough``: more parts never make it smaller.
+def _add_part(
+    b: FloatArray, D: FloatArray, ex: float, ey: float, start: FloatArray, slip: FloatArray, enough: float
+) -> bool:
+    """Take a part (V, 4, 2) of the chain into the largest q_uu and q_uv, and quotient of two instances' e·h; False
+    unless all e·h are positive and the slip bound is still small ``enough``: more parts never make it smaller.
+
+    Args:
+        start: (V, 4, 2) the first points are those where the section ends; (0, 4, 2) in the section itself.
     """
-    V = len(b)
-    for mixed in range(2):
-        for i in range(3):
-            for u in range(V):
-                ux, uy = b[u, i + 1, 0] - b[u, i, 0], b[u, i + 1, 1] - b[u, i, 1]
-                ahead = ex * ux + ey * uy
-                if not mixed:
-                    if not ahead > FLAT * (abs(ux) + abs(uy)):
-                        return False
-                    slip[2], slip[3] = min(slip[2], ahead), max(slip[3], ahead)
-                for v in range(0 if mixed else u, u if mixed else u + 1):
-                    vx, vy, most = b[v, i + 1, 0] - b[v, i, 0], b[v, i + 1, 1] - b[v, i, 1], 0.0
-                    for k in range(4):
-                        cross = ux * D[v, k, 1] - uy * D[v, k, 0] + vx * D[u, k, 1] - vy * D[u, k, 0]
-                        most = max(most, abs(cross))
-                    slip[mixed] = max(slip[mixed], most / (ahead + ex * vx + ey * vy))
-        if slip[0] > enough:
-            return False
+    V, way = len(b), np.empty((len(b), 2))
+    for i in range(3):
+        least, most_ahead = np.inf, 0.0
+        for u in range(V):
+            for c in range(2):
+                way[u, c] = b[u, i + 1, c] - (start[u, 0, c] if len(start) else b[u, i, c])
+            ahead = ex * way[u, 0] + ey * way[u, 1]
+            if not ahead > FLAT * (abs(way[u, 0]) + abs(way[u, 1])):
+                return False
+            least, most_ahead = min(least, ahead), max(most_ahead, ahead)
+        slip[2] = max(slip[2], most_ahead / least)
+        for u in range(V):
+            ux, uy = way[u, 0], way[u, 1]
+            for v in range(u + 1):
+                vx, vy, most = way[v, 0], way[v, 1], 0.0
+                for k in range(4):
+                    cross = ux * D[v, k, 1] - uy * D[v, k, 0] + vx * D[u, k, 1] - vy * D[u, k, 0]
+                    most = max(most, abs(cross))
+                mixed = 1 if v < u else 0
+                slip[mixed] = max(slip[mixed], most / (ex * (ux + vx) + ey * (uy + vy)))
+                if slip[0] > enough:
+                    return False
     return _one_way(slip, V) <= enough
 
 
 @compiled
 def _follow(
-    chain: FloatArray, D: FloatArray, side: int, first: float, last: float, reach: float, ex: float, ey: float,
+    chain: FloatArray, D: FloatArray, side: int, first: float, last: float, reach: FloatArray, ex: float, ey: float,
     slip: FloatArray, enough: float, scratch: FloatArray,
 ) -> tuple[bool, bool]:  # fmt: skip
-    """Take in what a chain (m V, 4, 2) has beyond a place, until it extends by ``reach`` or its arc ends.
+    """Take in what a chain (m V, 4, 2) has beyond a place, until it extends by ``reach`` (V,) or its arc ends.
 
     Args:
         side: 0 to look back from the place ``first``, 1 to look ahead. last: the arc's end.
@@ -132,6 +147,8 @@ def _follow(
     m, part, start = len(chain) // V, scratch[V : 2 * V], scratch[2 * V :]
     near, far = (0, 3) if side else (3, 0)
     at = first
+    if reach.max() <= 0.0:
+        return True, False
     for turn in range(24):  # so many parts are looked at at most
         if at >= last if side else at <= last:
             return True, True
@@ -139,16 +156,21 @@ def _follow(
         # The first part, as a share of a segment; each is twice as long as the one before.
         step = min(s + 1 - at if side else at - s, (1 / 64) * 2.0**turn)
         a, b = (at, min(at + step, last)) if side else (max(at - step, last), at)
-        least = np.inf
+        there = True
         for v in range(V):
             section(chain[s % m * V + v], a - s, b - s, part[v])
             if turn == 0:
                 start[v, 0, 0], start[v, 0, 1] = part[v, near, 0], part[v, near, 1]
             x, y = part[v, far, 0] - start[v, 0, 0], part[v, far, 1] - start[v, 0, 1]
-            least = min(least, abs(ex * x + ey * y))
-        if not _add_part(part, D, ex, ey, slip, enough):
+            there &= abs(ex * x + ey * y) >= reach[v]
+        for v in range(V if side == 0 else 0):  # mirrored at the section's end, looking back is looking ahead
+            for c in range(2):
+                for k in range(2):
+                    one, other = part[v, k, c], part[v, 3 - k, c]
+                    part[v, k, c], part[v, 3 - k, c] = 2 * start[v, 0, c] - other, 2 * start[v, 0, c] - one
+        if not _add_part(part, D, ex, ey, start, slip, enough):
             return False, False
-        if least >= reach:
+        if there:
             return True, False
         at = b if side else a
     return False, False

@@ -18,6 +18,7 @@ import numpy as np
 from ..curves.bezier import cross
 from ..types import BoolArray, FloatArray, IntArray
 from .joints import EXACT, Layout
+from .state import Design
 
 SAMPLES = np.linspace(0.0, 1.0, 9)[1:-1]
 """Parameters of a segment at which it is to stay where it is."""
@@ -41,9 +42,26 @@ SETTLED = 1e-3
 SOFT = 1e-9
 """Share of the dual's diagonal that is added to it, as bounds may contradict each other."""
 
-AROUND = (1, 2)
-"""Steps of the grid around the best place within which ends of handles are sought: one, then two. With one alone 106
-of 220 kinks of a degree or more of ten variable fonts are mended, with both 108, for up to twice the time."""
+ALONG = ((12.0, 4), (np.inf, 2))
+"""Steps along its curve by which a point is put elsewhere, by the length of its shortest handle, in steps, too."""
+
+ACROSS = 1.0
+"""Steps by which that is across the curve at most."""
+
+TRIED = 96
+"""Places of the points around a joint, those that seem best, for which all its bounds are computed."""
+
+AS_FOUND = 4.0
+"""Price of the square of what such a joint turns otherwise than before rounding, in what it may turn."""
+
+HELD, LAST = 0.7, 0.9
+"""Shares of the tolerance by which samples of curves move at most: before rounding, which adds to it, and after."""
+
+WORST = 16
+"""Samples and coordinates at most, those that move by the most too much, that a round bounds besides others."""
+
+STIFF = 0.1
+"""Price of the square of a handle's move against the mean square of what curves move."""
 
 SWEEPS = 2
 """How often each handle is put on the grid."""
@@ -116,13 +134,14 @@ class Stretch:
 
     Attributes:
         free: (S,) numbers of the points. spread: (N, S) how all points move with them. frozen: (K, S, 2) coordinates
-            that stay, in which a handle is level. joints: numbers of those that are touched.
+            that stay, in which a handle is level. joints: numbers of those that are touched. samples: (R, K, 2 S) what
+            samples of curves move across them by the points' moves, at the corners of the design space and, of two
+            corners that slip along their curves apart, between them, as :mod:`.slip` has it.
     """
 
-    def __init__(self, layout: Layout, free: Sequence[int], stiff: float) -> None:
-        self.layout, self.free = layout, np.array(sorted(set(free)))
-        old = layout.points
-        count = old.shape[1]
+    def __init__(self, layout: Layout, free: Sequence[int], design: Design) -> None:
+        self.layout, self.free, self.design = layout, np.array(sorted(set(free))), design
+        count = layout.points.shape[1]
         self.spread = np.zeros((count, len(self.free)))
         self.spread[self.free, np.arange(len(self.free))] = 1.0
         at = np.flatnonzero(layout.implied)
@@ -132,114 +151,197 @@ class Stretch:
         nodes = layout.starts
         touched = moved[nodes - 1] | moved[nodes] | moved[(nodes + 1) % count]
         self.joints = np.flatnonzero(touched & ~layout.implied[nodes])
-        rows = []
+        corners = design.corners
+        one, other = (each[::-1] for each in np.tril_indices(len(corners)))
+        rows, squares, old = (
+            [],
+            np.zeros((len(corners), *2 * (2 * len(self.free),))),
+            np.tensordot(corners, layout.points, axes=1),
+        )
         for segment, degree in enumerate(layout.degrees.tolist()):
             own = (nodes[segment] + np.arange(degree + 1)) % count
             if moved[own].any():
                 basis, slopes = _BASES[degree]
                 along = slopes @ old[:, own]
                 size = np.hypot(along[..., 0], along[..., 1])[..., None]
-                normals = _turned(along) / np.where(size > EXACT, size, np.inf)
-                rows.append((basis @ self.spread[own])[None, :, :, None] * normals[:, :, None])
-        each = np.concatenate(rows, axis=1)
-        arms = old[:, layout.handles[self.joints]] - old[:, layout.starts[self.joints], None]
+                across = (basis @ self.spread[own])[None, :, :, None] * _turned(along)[:, :, None]
+                across = across.reshape(*across.shape[:2], -1)  # (V, T, 2 S)
+                mixed = (
+                    corners[other][:, None, :, None] * across[one][:, :, None]
+                    + corners[one][:, None, :, None] * across[other][:, :, None]
+                ) / np.maximum(size[one] + size[other], EXACT)[..., None]
+                rows.append(mixed.reshape(-1, *mixed.shape[2:]))
+                normal = across / np.where(size > EXACT, size, np.inf)
+                squares += np.swapaxes(normal, 1, 2) @ normal / len(SAMPLES)
+        self.samples = np.concatenate(rows)
+        arms = layout.points[:, layout.handles[self.joints]] - layout.points[:, layout.starts[self.joints], None]
         self.room = ROOM * np.hypot(arms[..., 0], arms[..., 1]).min(axis=(1, 2), initial=np.inf)[:, None]
-        self.samples = each.reshape(*each.shape[:2], -1)  # (K, M, 2 S) what they move by the points' moves
-        price = np.repeat(np.where(layout.is_node[self.free], NODE, 1.0), 2) * stiff
-        cost = np.swapaxes(self.samples, 1, 2) @ self.samples / len(SAMPLES) + np.diag(price)
-        held = self.frozen.reshape(len(old), -1)
-        self.cost = cost
-        loose = cost + np.eye(len(price)) * np.where(held, 1e12, 0.0)[:, None]
-        self.inverse = np.linalg.inv(loose) * ~(held[:, :, None] | held[:, None])  # (K, 2 S, 2 S)
+        price = np.repeat(np.where(layout.is_node[self.free], NODE, 1.0), 2) * STIFF
+        self.cost = np.tensordot(corners.T**2, squares, axes=1) + np.diag(price)  # (K, 2 S, 2 S)
+        held = self.frozen.reshape(len(self.cost), -1)
+        loose = self.cost + np.eye(len(price)) * np.where(held, 1e12, 0.0)[:, None]
+        self.inverse = np.linalg.inv(loose) * ~(held[:, :, None] | held[:, None])
 
     def places_of(self, x: FloatArray) -> FloatArray:
         """(K, N, 2) all points after moves (K, S, 2)."""
         moved: FloatArray = self.layout.points + self.spread @ x
         return moved
 
-    def farthest(self, x: FloatArray) -> float:
-        """The largest move of a sample across the curve in any master."""
-        return float(np.abs(self.samples @ x.reshape(len(x), -1, 1)).max())
+    def moves(self, x: FloatArray) -> FloatArray:
+        """(R,) what samples move across the curves by moves of points (K, S, 2)."""
+        found: FloatArray = self.samples.reshape(len(self.samples), -1) @ x.ravel()
+        return found
 
-    def least(self, bounds: Sequence[Bound], weights: FloatArray) -> FloatArray:
-        """(K, S, 2) the least moves that keep the bounds at places with weights (L, K)."""
+    def excess(self, x: FloatArray, bounds: Sequence[Bound]) -> float:
+        """How many times what they may be turns, jumps and moves of samples are at most."""
+        here, weights = self.places_of(x), self.design.places
+        found = [float(np.abs(self.moves(x)).max() / self.design.tolerance)]
+        for bound in bounds:
+            at = np.tensordot(weights, here[:, bound.points], axes=1)
+            values = (jumps_at if bound.is_jump else turns_at)(at)[0] / bound.per
+            found.append(float((np.abs(values) / np.maximum(bound.most, LEAST)).max()))
+        return max(found)
+
+    def least(self, bounds: Sequence[Bound], most_move: float) -> FloatArray:
+        """(K, S, 2) the least moves that keep the bounds, and curves within the tolerance."""
         from scipy.linalg import solve_triangular
         from scipy.optimize import nnls
 
+        weights = self.design.places
         K, size = len(self.inverse), self.inverse.shape[1]
         x, kept = np.zeros((K, size)), np.zeros((2, len(bounds), len(weights)), dtype=np.bool_)
         spread = [self.spread[bound.points] for bound in bounds]
         most, per = np.array([bound.most for bound in bounds]), np.array([bound.per for bound in bounds])
+        far, beyond = np.zeros((2, len(self.samples)), dtype=np.bool_), np.zeros((2, K, size), dtype=np.bool_)
+        limit = HELD * self.design.tolerance
+        sign = np.array([1.0, -1.0])
         for _ in range(ROUNDS):
             here = self.places_of(x.reshape(K, -1, 2))
             found = [
                 (jumps_at if bound.is_jump else turns_at)(np.tensordot(weights, here[:, bound.points], axes=1))
                 for bound in bounds
             ]
-            values = np.array([value for value, _ in found]) / per
-            if (np.abs(values) - most).max() < SETTLED:
+            values, moves = np.array([value for value, _ in found]) / per, self.moves(x)
+            over = np.abs(moves).max() - limit, np.abs(x).max() - most_move
+            if (np.abs(values) - most).max() < SETTLED and max(over) < SETTLED * limit:
                 break
             kept[0] |= values < -NEAR * most
             kept[1] |= values > NEAR * most
+            for held, value, allowed in ((far, moves, limit), (beyond, x, most_move)):
+                over_by = np.abs(value).ravel() - allowed
+                worst = np.argsort(-over_by)[:WORST]
+                worst = worst[over_by[worst] > 0]
+                held.reshape(2, -1)[(value.ravel()[worst] > 0).astype(np.int64), worst] = True
             # Those with sign c + sign J x >= -most, linearised, are A x >= b.
             side, which, place = np.nonzero(kept)
-            sign = np.array([1.0, -1.0])[side]
             slopes = np.empty((len(which), size))
             for n, part in enumerate(spread):
                 by = found[n][1][place[which == n]]  # (R', 5, 2)
                 slopes[which == n] = (part.T @ by).reshape(-1, size)
-            scale = sign / per[which, place]
+            scale = sign[side] / per[which, place]
             if not (np.isfinite(slopes).all() and np.isfinite(values).all()):
                 break  # a handle lost its length
             A = weights[place][:, :, None] * (slopes * scale[:, None])[:, None]  # (R, K, 2 S)
-            b = (A * x).sum(axis=(1, 2)) - sign * values[which, place] - most[which, place]
+            b = (A * x).sum(axis=(1, 2)) - sign[side] * values[which, place] - most[which, place]
+            side, sample = np.nonzero(far)
+            of_curves = sign[side, None, None] * self.samples[sample]
+            side, k, which = np.nonzero(beyond)
+            of_points = np.zeros((len(k), K, size))
+            of_points[np.arange(len(k)), k, which] = sign[side]
+            A = np.concatenate([A, of_curves, of_points])
+            b = np.concatenate([b, np.full(len(of_curves), -limit), np.full(len(of_points), -most_move)])
             R = (self.inverse @ A[..., None])[..., 0]
             G = A.reshape(len(A), -1) @ R.reshape(len(A), -1).T
             G[np.diag_indices(len(G))] += SOFT * max(np.trace(G), 1e-30)
             L = np.linalg.cholesky(G)
             dual, _ = nnls(L.T, solve_triangular(L, b, lower=True))
-            new = np.tensordot(dual, R, axes=1)
+            new, first = np.tensordot(dual, R, axes=1), len(place)
+            for held, rows in ((far, len(of_curves)), (beyond, len(of_points))):
+                held[held] = dual[first : first + rows] > 0
+                first += rows
             share = np.minimum(1.0, self.room / np.maximum(np.abs(new - x).max(axis=1, keepdims=True), EXACT))
             x += share * (new - x)
         return x.reshape(K, -1, 2)
 
-    def on_grid(
-        self, x: FloatArray, bounds: Sequence[Bound], weights: FloatArray, step: float, around: int
-    ) -> FloatArray:
-        """(K, S, 2) moves to places on the grid so near those of ``x`` that keep the bounds best; see ``AROUND``."""
-        old = self.layout.points[:, self.free]
-        to = np.where(self.frozen, old, np.round((old + x) / step) * step)
-        found, best = to - old, x
-        steps = np.arange(-around, around + 1) * step
-        none = np.zeros(1)
+    def on_grid(self, x: FloatArray, bounds: Sequence[Bound], most_move: float) -> FloatArray:
+        """(K, S, 2) moves to places on the grid so near those of ``x`` that keep the bounds best; see ``ALONG``."""
+        old, step = self.layout.points[:, self.free], self.design.step
+        found = np.where(self.frozen, 0.0, np.round((old + x) / step) * step - old)
+        turns = {bound.joint: bound.most for bound in bounds if not bound.is_jump}
         index = {point: s for s, point in enumerate(self.free.tolist())}
-        own = [[index[p] for p in pair if p in index] for pair in self.layout.handles[self.joints].tolist()]
         for _ in range(SWEEPS):
             before = found.copy()
-            for pair in own:
-                if not pair or self.layout.is_node[self.free[pair]].all():
+            for joint in self.joints.tolist():
+                around = self.layout.around(joint)[1:4].tolist()
+                own = [index.get(point, -1) for point in around]
+                if max(own) < 0:
                     continue
                 for k in range(len(old)):
-                    ways = [none if self.frozen[k, s, c] else steps for s in pair for c in range(2)]
-                    near = np.stack(np.meshgrid(*ways, indexing="ij"), axis=-1).reshape(-1, len(pair), 2)
-                    if len(near) == 1:
-                        continue
-                    tried = np.repeat(found[k][None], len(near), axis=0)
-                    tried[:, pair] = (to - old)[k, pair] + near
-                    found[k] = tried[self._merit(found, k, tried, best, bounds, weights, step).argmin()]
+                    most = turns[joint][self.design.places[:, k].argmax()] if joint in turns else np.pi
+                    tried = self._near(found, k, x, around, own, most, most_move)
+                    if len(tried) > 1:
+                        found[k] = tried[self._merit(found, k, tried, x, bounds).argmin()]
             if (before == found).all():
                 break
         return found
 
-    def _merit(
-        self, x: FloatArray, k: int, tried: FloatArray, best: FloatArray, bounds: Sequence[Bound], weights: FloatArray,
-        step: float,
+    def _near(
+        self, found: FloatArray, k: int, x: FloatArray, around: Sequence[int], own: Sequence[int], most: float,
+        most_move: float,
     ) -> FloatArray:  # fmt: skip
+        """(n, S, 2) moves of master k of which the points around one joint are put on other places on the grid.
+
+        They are the ``TRIED`` for which the joint turns little in this master, and curves move by little.
+        """
+        step, points = self.design.step, self.layout.points[k, around]
+        best = points + [x[k, s] if s >= 0 else np.zeros(2) for s in own]
+        arms = np.hypot(*np.diff(best, axis=0).T) / step
+        along = best[2] - best[0]
+        along = along / max(float(np.hypot(*along)), EXACT)
+        sets = []
+        for n, s in enumerate(own):
+            if s < 0:
+                sets.append(points[n : n + 1])
+                continue
+            reach = next(reach for length, reach in ALONG if arms[max(n - 1, 0) : n + 1].min() <= length)
+            steps = np.arange(-reach, reach + 1) * step
+            middle = np.where(self.frozen[k, s], points[n], np.round(best[n] / step) * step)
+            axes = [np.zeros(1) if held else steps for held in self.frozen[k, s]]
+            near = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2) + middle
+            keep = (np.abs(cross(near - middle, along)) <= ACROSS * step) & (
+                np.hypot(*(near - points[n]).T) <= most_move
+            )
+            keep |= (near == points[n] + found[k, s]).all(axis=1)
+            sets.append(near[keep])
+        at = np.stack(np.meshgrid(*(np.arange(len(each)) for each in sets), indexing="ij"), axis=-1).reshape(-1, 3)
+        places = np.stack([each[at[:, n]] for n, each in enumerate(sets)], axis=1)  # (n, 3, 2)
+        a, b = np.swapaxes(np.diff(np.concatenate([best[None], places]), axis=1), 0, 1)
+        turn = np.arctan2(cross(a, b), (a * b).sum(axis=1))
+        price = (AS_FOUND * (turn[1:] - turn[0]) / (most + LEAST)) ** 2
+        chosen = [n for n, s in enumerate(own) if s >= 0]
+        free = [own[n] for n in chosen]
+        off = (found[k] - x[k]).copy()
+        off[free] = 0.0
+        cost = self.cost[k].reshape(len(off), 2, len(off), 2)
+        moved = (places[:, chosen] - best[chosen]).reshape(len(places), -1)
+        block = cost[free][:, :, free].reshape(moved.shape[1], -1)
+        pull = np.tensordot(off, cost[:, :, free], axes=2).reshape(-1)
+        price += (((moved @ block) + 2 * pull) * moved).sum(axis=1) / step**2
+        if len(price) > TRIED:
+            places = places[np.argpartition(price, TRIED)[:TRIED]]
+        tried = np.repeat(found[k][None], len(places), axis=0)
+        tried[:, free] = places[:, chosen] - points[chosen]
+        return tried
+
+    def _merit(self, x: FloatArray, k: int, tried: FloatArray, best: FloatArray, bounds: Sequence[Bound]) -> FloatArray:
         """(n,) prices of moves (n, S, 2) of master k beside those of all others."""
-        off = tried.reshape(len(tried), -1)
-        total = np.einsum("ns,st,nt->n", off, self.cost[k], off) / step**2
+        off, weights = (tried - best[k]).reshape(len(tried), -1), self.design.places
+        total = ((off @ self.cost[k]) * off).sum(axis=1) / self.design.step**2
         here = self.places_of(x)
         acts = np.flatnonzero(weights[:, k])
+        own = self.samples[:, k].any(axis=1)
+        moves = self.moves(x)[own] + (tried - x[k]).reshape(len(tried), -1) @ self.samples[own, k].T  # (n, R')
+        total += BEYOND * (np.maximum(np.abs(moves) / (LAST * self.design.tolerance) - 1, 0.0) ** 2).sum(axis=1)
         for bound in bounds:
             part = self.spread[bound.points]
             if not part.any():

@@ -44,9 +44,12 @@ class Layout:
 
     @cached_property
     def frozen(self) -> BoolArray:
-        """(K, N, 2) coordinates of points that stay, as a handle or a line at them is level."""
+        """(K, N, 2) coordinates of points that stay: of lines and handles that are level in all masters, or at a joint
+        whose other one is level, too. A short handle alone is level by rounding."""
         level = np.abs(self.points - np.roll(self.points, -1, axis=1)) <= EXACT
         level &= (self.is_node | np.roll(self.is_node, -1))[:, None]
+        both = level & np.roll(level, 1, axis=1) & self.is_node[:, None]
+        level &= level.all(axis=0) | both | np.roll(both, -1, axis=1)
         found: BoolArray = level | np.roll(level, 1, axis=1)
         return found
 

@@ -19,7 +19,7 @@ from ..checks.segments import rounding_turn
 from ..checks.turns import joint_controls, turns_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
-from .balance import AROUND, Bound, Stretch, curvatures_at, jumps_at, turns_at
+from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
 from .state import Change, Design, State, distances
 
@@ -27,9 +27,9 @@ BETTER = 0.7
 """Share of its turn that a mended joint may keep, where handles are so short that the grid is coarse."""
 
 LOOSE = 0.9
-"""Share of what a joint may turn at most that it is made to turn at most between masters."""
+"""Share of what a joint may turn, and of what points may move, that is aimed at before rounding."""
 
-ROOM = 0.6
+TIGHTER = 0.6
 """Share of that again, where no place on the grid turns so little."""
 
 BESIDE = 0.3
@@ -39,10 +39,7 @@ SMALL = 3.0
 """Moves of a point, in thousandths of an em, up to which the first way that does is taken."""
 
 HOPE = 1.5
-"""Tolerances by which samples move at most where it is worth while to look for places on the grid."""
-
-WIDER = 3
-"""Moves beyond the tolerance that are tried at most, those that move curves least, to say what a joint needs."""
+"""Times what they may be that turns and moves of samples are at most where places on the grid are looked for."""
 
 GRID, STILL, STILL_KINKS = "is mended by no move on the grid", "is still found", "still kinks"
 BEYOND = "is beyond the tolerance"
@@ -57,23 +54,24 @@ class Way(NamedTuple):
     """How a group moves.
 
     Attributes:
-        far: whether the handles at the other ends of the curves move, too. node: whether the nodes do. stiff: price of
-            moves. exact: whether joints turn by less than the threshold; or, where handles or segments are so short
-            that a check does not count it, by more. meets: whether jumps of curvature that kinks hide are to vanish.
+        far: whether the handles at the other ends of the curves move, too. node: whether the nodes do. small: whether
+            points move by no more than ``SMALL``. exact: whether joints turn by less than the threshold; or, where
+            handles or segments are so short that a check does not count it, by more. meets: whether jumps of curvature
+            that kinks hide are to vanish.
     """
 
     far: bool
     node: bool
-    stiff: float
+    small: bool
     exact: bool
     meets: bool
 
 
 WAYS = [
-    Way(far, node, stiff, exact, meets)
+    Way(far, node, small, exact, meets)
     for exact, meets in ((True, True), (True, False), (False, True), (False, False))
-    for stiff in (0.3, 0.01)
-    for far, node in ((False, False), (True, False), (True, True))
+    for small in (True, False)
+    for far, node in ((False, False), (False, True), (True, True))
 ]
 
 
@@ -162,7 +160,7 @@ def smoothed(
         for group in groups:
             own = {(group.contour, s) for s in group.joints}
             if group.now is not None:
-                mended.update({place: left[place] for place in own})
+                mended.update({place: changes[place] for place in own})
                 continue
             needs = group.needs if group.why == BEYOND else None
             for place in own:
@@ -227,58 +225,63 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
         first: the contour as it was. contour: as it is now.
     """  # fmt: skip
     layout = Layout(contour)
-    seen, wider = set[bytes](), []
+    seen = set[bytes]()
+    stretches = dict[tuple[bool, bool], Stretch]()
     for exact, ways in groupby(WAYS, key=lambda way: way.exact):
         later = []
         for way in ways:
-            free = sorted({point for joint in group.joints for point in layout.free(joint, way.far, way.node)})
-            if not free:
-                continue
-            stretch = Stretch(layout, free, way.stiff)
+            if (way.far, way.node) not in stretches:
+                free = sorted({point for joint in group.joints for point in layout.free(joint, way.far, way.node)})
+                if not free:
+                    continue
+                stretches[way.far, way.node] = Stretch(layout, free, design)
+            stretch = stretches[way.far, way.node]
             bounds = bounds_of(stretch, group, way, design)
-            x = stretch.least(bounds, design.places)
-            if stretch.farthest(x) > HOPE * design.tolerance:
-                wider.append((stretch.farthest(x), stretch, bounds, x, exact))
+            most = SMALL * design.em / 1000 if way.small else np.inf
+            key = b"".join([bytes(way[:3]), *(bound.most.tobytes() for bound in bounds)])
+            if key in seen:
                 continue
-            for points in _on_grid(stretch, bounds, x, design):
-                if not _is_mended(layout, group, points, exact, design):
+            seen.add(key)
+            x = stretch.least(bounds, LOOSE * most)
+            if stretch.excess(x, bounds) > HOPE:
+                group.blame(BEYOND)
+                continue
+            for points in _on_grid(stretch, bounds, x, most):
+                if points.tobytes() in seen or not _is_mended(layout, group, points, exact, design):
                     continue
-                new = points.tobytes() not in seen
                 seen.add(points.tobytes())
-                proposal = _proposal(group, first, layout, points, design) if new else None
-                if proposal is None and new:
-                    continue
+                proposal = _proposal(group, first, layout, points, design)
                 if proposal is not None and proposal.change <= SMALL * design.em / 1000:
                     yield proposal
                 elif proposal is not None:
                     later.append(proposal)
                 break
         yield from sorted(later, key=lambda each: each.change)
-    for least, stretch, bounds, x, exact in sorted(wider, key=lambda each: each[0])[:WIDER]:
-        if group.needs is None and group.why in WEAK:
-            points = stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step, AROUND[0]))
-            if _is_mended(layout, group, points, exact, design):
-                found = _proposal(group, first, layout, points, design._replace(tolerance=least))
-                group.needs = found.distance if found else group.needs
-                group.blame(BEYOND)
+    if group.needs is None and group.why in (*WEAK, BEYOND) and stretches:
+        way = WAYS[-1]._replace(meets=group.kind == "jump")
+        anything = design._replace(tolerance=np.inf)
+        stretch = Stretch(layout, [*stretches.values()][-1].free.tolist(), anything)
+        bounds = bounds_of(stretch, group, way, design)
+        x = stretch.least(bounds, np.inf)
+        points = stretch.places_of(stretch.on_grid(x, bounds, np.inf))
+        if _is_mended(layout, group, points, way.exact, design):
+            farthest = max(float(np.abs(stretch.moves(x)).max()), design.tolerance)
+            _proposal(group, first, layout, points, design, farthest)
 
 
-def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, design: Design) -> Iterator[FloatArray]:
+def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, most: float) -> Iterator[FloatArray]:
     """Points on the grid near the least moves, and then near those that leave more room for rounding."""
-    for around in AROUND:
-        yield stretch.places_of(stretch.on_grid(x, bounds, design.places, design.step, around))
-    tighter = [bound if bound.is_jump else bound._replace(most=ROOM * bound.most) for bound in bounds]
-    x = stretch.least(tighter, design.places)
-    if stretch.farthest(x) <= HOPE * design.tolerance:
-        yield stretch.places_of(stretch.on_grid(x, tighter, design.places, design.step, AROUND[0]))
+    yield stretch.places_of(stretch.on_grid(x, bounds, most))
+    tighter = [bound if bound.is_jump else bound._replace(most=TIGHTER * bound.most) for bound in bounds]
+    yield stretch.places_of(stretch.on_grid(stretch.least(tighter, LOOSE * most), tighter, most))
 
 
 def _proposal(
-    group: Group, first: MasterContour, layout: Layout, points: FloatArray, design: Design
+    group: Group, first: MasterContour, layout: Layout, points: FloatArray, design: Design, near: float | None = None
 ) -> Proposal | None:
-    """A contour with moved points, if it is within the tolerance."""
+    """A contour with moved points, if it is within the tolerance; ``near``: measure up to there."""
     new, old = MasterContour(points, layout.degrees), layout.points
-    distance = float(distances(first, new, design).max())
+    distance = float(distances(first, new, design._replace(tolerance=near or design.tolerance)).max())
     if distance > design.tolerance:
         group.needs = min(group.needs or np.inf, distance)
         group.blame(BEYOND)
