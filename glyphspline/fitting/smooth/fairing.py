@@ -50,7 +50,7 @@ FEWEST = 9
 """Vertices of a contour from which the bands of its equations do not overlap."""
 
 BAND = 9
-"""Diagonals of the equations, in the order of :func:`_folded`."""
+"""Diagonals of the equations, in the order of :func:`_order`."""
 
 
 @compiled
@@ -157,6 +157,7 @@ def _fair(
             speed = np.sqrt(dx * dx + dy * dy)
             normals[i + 1, 0], normals[i + 1, 1] = -dy / speed, dx / speed
     normals[0], normals[n + 1], normals[n + 2] = normals[n], normals[1], normals[2]  # row c of span j is j + c
+    order, unknowns = _order(normals)
     # Spans that move, and those whose first sample is compared with the last one of a span that does.
     moving = np.empty(n, dtype=np.bool_)
     for j in range(n):
@@ -181,10 +182,12 @@ def _fair(
                 slopes[s, c] = value * (nx * ex + ny * ey)
     moves, delta, weight = np.zeros(n + 3), np.zeros(n + 3), BARRIER
     for _ in range(STEPS):
-        band, right = _equations(jets, first, second, away, most, slopes, moving, FLAT * unit / length, near, weight)
+        band, right = _equations(
+            jets, first, second, away, most, slopes, moving, order, unknowns, FLAT * unit / length, near, weight
+        )
         _solve(band, right)
         for c in range(n + 3):
-            delta[c] = right[_folded((c - 1) % n, n)]
+            delta[c] = right[order[c]] if order[c] >= 0 else 0.0
         share = 1.0
         for s in range(m):
             j, move = s // SAMPLES, 0.0
@@ -242,9 +245,9 @@ def _distance(
 @compiled
 def _equations(
     jets: FloatArray, first: FloatArray, second: FloatArray, away: FloatArray, most: FloatArray, slopes: FloatArray,
-    moving: BoolArray, flat: float, near: float, weight: float,
+    moving: BoolArray, order: IntArray, unknowns: int, flat: float, near: float, weight: float,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """The matrix of a Newton step, its lower band in the order of :func:`_folded`, and the right side."""
+    """The matrix of a Newton step, its upper band for :func:`_solve`, and the right side."""
     m = len(jets)
     n = m // SAMPLES
     kappa, by = np.empty(m), np.empty((m, 4))
@@ -284,42 +287,57 @@ def _equations(
                 right[j + a] -= slope * slopes[s, a]
                 for b in range(a, 4):
                     cyclic[j + a, b - a] += bend * slopes[s, a] * slopes[s, b]
-    band, folded = np.zeros((n, BAND + 1)), np.zeros(n)
+    band, folded = np.zeros((unknowns + BAND, BAND + 1)), np.zeros(unknowns + BAND)
     for j in range(n + 4):
-        i = _folded((j - 1) % n, n)
-        folded[i] += right[j]
-        for a in range(5):
-            k = _folded((j - 1 + a) % n, n)
-            band[max(i, k), abs(i - k)] += cyclic[j, a]
-    for i in range(n):
-        band[i, 0] += 1e-9 * band[i, 0] + 1e-3 / (near * near)  # held points have nothing else
+        i = order[j]
+        if i >= 0:
+            folded[i] += right[j]
+            for a in range(min(5, n + 4 - j)):
+                k = order[j + a]
+                if k >= 0:
+                    band[min(i, k), abs(i - k)] += cyclic[j, a]
+    for i in range(unknowns):
+        band[i, 0] += 1e-9 * band[i, 0] + 1e-3 / (near * near)
     return band, folded
 
 
 @compiled
-def _folded(i: int, n: int) -> int:
-    """Where index i of a cycle stands in an order in which all neighbours are near."""
-    return 2 * i if 2 * i < n else 2 * (n - 1 - i) + 1
+def _order(normals: FloatArray) -> tuple[IntArray, int]:
+    """The row in the equations of each control point, from the last to the third after it, and how many rows there are.
+
+    Those without a normal have none, -1. The cycle of the others is folded, so that all neighbours are near.
+    """
+    n = len(normals) - 3
+    order, count = np.full(n + 4, -1), 0
+    for c in range(1, n + 1):
+        if normals[c, 0] != 0 or normals[c, 1] != 0:
+            order[c] = count
+            count += 1
+    for c in range(1, n + 1):
+        i = order[c]
+        if i >= 0:
+            order[c] = 2 * i if 2 * i < count else 2 * (count - 1 - i) + 1
+    order[0], order[n + 1 :] = order[n], order[1:4]
+    return order, count
 
 
 @compiled
 def _solve(band: FloatArray, x: FloatArray) -> None:
-    """Solve a positive definite system by Cholesky's method, in place; ``band[i, d]`` is its entry (i, i - d)."""
-    n = len(x)
+    """Solve a positive definite system by elimination, in place; ``band[i, d]`` is its entry (i, i + d).
+
+    Behind the last row there are BAND more, of zeros.
+    """
+    n = len(x) - BAND
     for i in range(n):
-        first = max(0, i - BAND)
-        for j in range(first, i + 1):
-            v = band[i, i - j]
-            for k in range(first, j):
-                v -= band[i, i - k] * band[j, j - k]
-            band[i, i - j] = v / band[j, 0] if j < i else np.sqrt(max(v, 1e-300))
-        for k in range(first, i):
-            x[i] -= band[i, i - k] * x[k]
-        x[i] /= band[i, 0]
+        for r in range(1, BAND + 1):
+            share = band[i, r] / band[i, 0]
+            x[i + r] -= share * x[i]
+            for c in range(r, BAND + 1):
+                band[i + r, c - r] -= share * band[i, c]
     for i in range(n - 1, -1, -1):
+        for r in range(1, BAND + 1):
+            x[i] -= band[i, r] * x[i + r]
         x[i] /= band[i, 0]
-        for k in range(max(0, i - BAND), i):
-            x[k] -= band[i, i - k] * x[i]
 
 
 @compiled
