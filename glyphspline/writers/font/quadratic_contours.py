@@ -29,6 +29,9 @@ LEVEL = np.radians(0.5)
 AIMS = 6
 """How far a control point may move along x and y so that a joint turns less, in units; further needs other legs."""
 
+SHARES = (1.0, 0.5)
+"""Of the turn that is no new kink: what is aimed at, on each try."""
+
 PHANTOMS = 4
 """Points after those of the contours, which encode the advance and the bearings."""
 
@@ -122,6 +125,7 @@ class Quadratic:
         self._whole = False
         # By joints of what is given: control points beside them that are chosen; and those that nothing helps.
         self._aims, self._left = dict[int, tuple[bool, FloatArray, int] | None](), set[int]()
+        self._tries = dict[int, int]()
         self._known = dict[Any, Fitted | None]()
         self._ranges: list[range] | None = None
         if self._maybe is not None:
@@ -323,13 +327,15 @@ class Quadratic:
             joint = firsts[k]
             if joint in self._left or not (turns_there[:, joint] < THRESHOLDS.corner_angle).all():
                 continue
-            self._aims[joint] = None if joint in self._aims else self._aimed(k, turns_there[:, joint])
+            tries = self._tries[joint] = self._tries.get(joint, -1) + 1
+            limit = max(float(turns_there[:, joint].max()) - 0.1, 0.8 * THRESHOLDS.kink)
+            self._aims[joint] = self._aimed(k, SHARES[tries] * limit) if tries < len(SHARES) else None
             self._inner[joint] = self._aims[joint] is None
             tried.append(joint)
             if self._inner[joint]:  # its other ends are those of another arc now
                 for other in (firsts[k - 1], firsts[(k + 1) % len(firsts)]):
                     if self._aims.get(other) is not None:
-                        del self._aims[other]
+                        del self._aims[other], self._tries[other]
         if not tried:
             return False
         self._cut()
@@ -348,10 +354,10 @@ class Quadratic:
         far = [span for span, each in every if each is not None and each.distance > self._tolerance]
         return any(joint in span or joint == (span[-1] + 1) % len(self._inner) for span in far)
 
-    def _aimed(self, k: int, turn: FloatArray) -> tuple[bool, FloatArray, int] | None:
+    def _aimed(self, k: int, most: float) -> tuple[bool, FloatArray, int] | None:
         """Whether the end of the arc before joint k is to be elsewhere, or else the beginning of that behind it; where:
-        near by in each master, with no more than the source's ``turn`` (K,); and its number of control points. None if
-        both are lines.
+        near by in each master, with at ``most`` so many degrees of turn; and its number of control points. None if both
+        are lines.
         """
         before, after = self._fits[k - 1], self._fits[k]
         if before is None and after is None:
@@ -365,7 +371,7 @@ class Quadratic:
         legs = (here - node)[:, None] + np.stack([u.ravel(), v.ravel()], axis=1)  # (K, C, 2)
         beyond = (node - there)[:, None]
         sine, cosine = cross(beyond, legs), (beyond * legs).sum(axis=2)
-        off = np.degrees(np.abs(np.arctan2(sine, cosine))) - np.maximum(turn, THRESHOLDS.kink / 2)[:, None]
+        off = np.degrees(np.abs(np.arctan2(sine, cosine))) - most
         unit = (here - node) / np.maximum(np.hypot(*(here - node).T), 1e-9)[:, None]
         along, across = (legs - legs[:, [len(u) ** 2 // 2]]) @ unit[:, :, None], cross(unit[:, None], legs)
         cost = (along[..., 0] / AIMS) ** 2 + across**2 / 4 + (np.maximum(off, 0.0) / 0.1) ** 2
