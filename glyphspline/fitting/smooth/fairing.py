@@ -164,7 +164,7 @@ def _fair(
         moving[j] = np.abs(normals[j : j + 4]).max() > 0
     # Each sample's derivatives, those of these by the four control points, and the same of its distance.
     jets, first, second = np.empty((m, 4)), np.empty((m, 4, 2)), np.empty((m, 4, 2))
-    away, most, slopes = np.empty(m), np.empty(m), np.empty((m, 4))
+    away, most, slopes, point = np.empty(m), np.empty(m), np.empty((m, 4)), np.empty((1, 1, 2))
     for j in range(n):
         for k in range(SAMPLES if moving[j] else 1):
             s, x = j * SAMPLES + k, k / SAMPLES
@@ -172,7 +172,8 @@ def _fair(
             jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3] = dx, dy, bx, by
             ex = ey = 0.0
             if moving[j]:
-                away[s], ex, ey = _distance(outline, pieces, j, x, ends, near, px, py, dx, dy)
+                point[0, 0, 0], point[0, 0, 1] = px, py
+                away[s], ex, ey = _distance(outline, point, j, x, ends, near, dx, dy)
                 most[s] = max(limits[j], 1.02 * abs(away[s]) + 1e-9 * near)
             for c in range(4):
                 value, slope, bend = _cubic(basis, j, c, x)
@@ -223,18 +224,15 @@ def _fair(
 
 @compiled
 def _distance(
-    outline: FloatArray, pieces: FloatArray, j: int, x: float, ends: FloatArray, near: float, px: float, py: float,
-    dx: float, dy: float,
-) -> tuple[float, float, float]:  # fmt: skip
-    """Signed distance from the outline of a point of span j, at x, and the unit vector along which it grows."""
+    outline: FloatArray, point: FloatArray, j: int, x: float, ends: FloatArray, near: float, dx: float, dy: float
+) -> tuple[float, float, float]:
+    """Signed distance from the outline of a point (1, 1, 2) on span j, at x, and the direction in which it grows."""
     place = ends[j]
     if x > 0:
-        point = np.empty((1, 1, 2))
-        point[0, 0, 0], point[0, 0, 1] = px, py
         place = near_place(1, outline, (1 - x) * ends[j] + x * ends[j + 1], ends[j], ends[j + 1], point, 0)
     s = int(np.floor(place))
     qx, qy, _, _, _, _ = jet(outline, s % len(outline), place - s)
-    ex, ey, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)
+    ex, ey, speed = point[0, 0, 0] - qx, point[0, 0, 1] - qy, np.sqrt(dx * dx + dy * dy)
     nx, ny, d = -dy / speed, dx / speed, np.sqrt(ex * ex + ey * ey)
     if place == s and d > 0.02 * near:  # a corner may be the nearest
         sign = 1.0 if ex * nx + ey * ny >= 0 else -1.0
