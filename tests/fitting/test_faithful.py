@@ -53,7 +53,7 @@ def test_written_results_are_within_the_tolerance(corners: str, character: str, 
         assert m.deviation is None or m.deviation <= m.deviation_bound  # None: drawn apart where it touches itself
         assert true_distance(contour) <= m.deviation_bound + 0.15
     loops = sum(contour.measures.new_crossings or 0 for contour in result.contours)
-    assert any("crosses itself" in note for note in result.notes) == (loops > 0)
+    assert any("times more than its source" in note for note in result.notes) == (loops > 0)
 
 
 def test_sharp_is_frugal() -> None:
