@@ -230,12 +230,11 @@ def _renumbered(found: Counter[Key], contours: Sequence[Edited], are_new: bool) 
 
 
 class _Try(NamedTuple):
-    """New places (K, P, 2) of points (P,), the distance that curves move, and the largest turn of a joint, or None."""
+    """New places (K, P, 2) of points (P,), and the distance that curves move."""
 
     numbers: IntArray
     places: FloatArray
     distance: float
-    turn: float | None
 
 
 @dataclass
@@ -257,7 +256,7 @@ class _Fault:
         if fixed is None:
             for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
                 bound = float(distances(origin, _moved(contour, numbers, places), design).max())
-                fault.tries.append(_Try(numbers, places, bound, None))
+                fault.tries.append(_Try(numbers, places, bound))
             if change.kind != "handles":  # whose moves come in the order in which they are liked
                 fault.tries.sort(key=lambda each: each.distance)
         within = [each for each in fault.tries if each.distance <= design.tolerance]
@@ -275,8 +274,7 @@ class _Fault:
         """Whether a finding there may come of these moves: at its place, at a neighbour, or of the whole contour."""
         if contour != self.change.contour:
             return False
-        reach = 3 if self.change.kind == "kink" else 4
-        return segment < 0 or (segment - self.change.segment + 2) % len(self.old) <= reach
+        return segment < 0 or (segment - self.change.segment + 2) % len(self.old) <= 4
 
     def next(self, why: str) -> None:
         """Give up the first move."""
@@ -291,7 +289,7 @@ class _Fault:
         """What became of the finding."""
         if not self.is_moved:
             return self.left()
-        numbers, new, bound, turn = self.tries[0]
+        numbers, new, bound = self.tries[0]
         old = self.old.points[:, numbers]
         moved = [
             (k, int(numbers[p]), (float(x), float(y)), (float(u), float(v)))
@@ -300,8 +298,7 @@ class _Fault:
             if (x, y) != (u, v)
         ]
         return replace(
-            self.change, after=turn,
-            moved=float(np.hypot(*(new - old).reshape(-1, 2).T).max()), moves=tuple(moved), distance=bound,
+            self.change, moved=float(np.hypot(*(new - old).reshape(-1, 2).T).max()), moves=tuple(moved), distance=bound,
         )  # fmt: skip
 
 
@@ -314,7 +311,7 @@ def _advance(
     for fault in moved:
         place = fault.change.contour, fault.change.segment
         if place in after.values[kind]:
-            fault.next("still kinks" if kind == "kink" else "is still found")
+            fault.next("is still found")
             given_up = True
         elif place in beyond:
             fault.next("is beyond the tolerance together with its neighbour")
