@@ -12,7 +12,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import process_time
@@ -22,6 +22,7 @@ import numpy as np
 
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic
+from glyphspline.curves.cubics import hidden_extrema
 from glyphspline.types import FloatArray
 
 from ..paper.measures import curvature_variation
@@ -101,12 +102,12 @@ def numbers(contour: gs.Contour) -> int:
 def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
     """Means over all glyphs of a face."""
     source = np.array([[sum(map(len, g.contours)), sum(map(numbers, g.contours))] for g in glyphs])
-    forge = np.array([fewest(g, results) for g, results in zip(glyphs, forge_results(glyphs), strict=True)])
+    forge = np.array([fewest(g, results)[:2] for g, results in zip(glyphs, forge_results(glyphs), strict=True)])
     best, best_time = converted(glyphs, gs.Options(corners="sharp", effort="best", tolerance=1.0))
     fast, fast_time = converted(glyphs, gs.Options(corners="sharp", effort="fast", tolerance=1.0))
     every = max(1, len(glyphs) // 25)
     few = glyphs[::every]
-    kurbo = np.array([fewest(glyph, kurbo_results(glyph)) for glyph in few])
+    kurbo = np.array([fewest(glyph, kurbo_results(glyph))[:2] for glyph in few])
     smooth, smooth_time = converted(few, gs.Options(corners="smooth", tolerance=1.0, effort="best"))
     third, _ = converted(few, gs.Options(corners="smooth", tolerance=1.0, effort="best", variant=3))
     missed, contours = best[:, 2].sum() + fast[:, 2].sum(), 2 * sum(len(g.contours) for g in glyphs)
@@ -198,13 +199,19 @@ def forge_results(glyphs: list[gs.Outline]) -> Iterator[list[list[list[Any]]]]:
             yield json.loads(p.stdout.readline())
 
 
-def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int]:
-    """Segments and numbers of the result with the fewest numbers that stays within one unit."""
+def inside(contours: Iterable[Iterable[Any]]) -> int:
+    """Horizontal and vertical extrema inside the cubics of contours, each a list of segments."""
+    return sum(hidden_extrema(np.asarray(s, dtype=np.float64)) for c in contours for s in c if len(s) == 4)
+
+
+def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int, int]:
+    """Segments, numbers and extrema inside cubics of the result with the fewest numbers that stays within one unit."""
     source = sampled((s for c in glyph.contours for s in c.segments()), SPACING)
     sizes = [(sum(2 * (len(s) - 1) for c in r for s in c), sum(map(len, r)), k) for k, r in enumerate(results)]
     for size, segments, k in sorted(sizes):
         curve = sampled((np.array(s) for c in results[k] for s in c), SPACING)
         pairs = (curve, source), (source, curve)
         if len(curve) and all(distances(*pair, closed=False).max() <= 1.0 for pair in pairs):
-            return segments, size
-    return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours))
+            return segments, size, inside(results[k])
+    source_inside = inside(c.segments() for c in glyph.contours)
+    return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours)), source_inside
