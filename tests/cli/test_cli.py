@@ -19,7 +19,7 @@ from typer.testing import CliRunner, Result
 
 import glyphspline
 from glyphspline.cli import app
-from glyphspline.cli.groups import Shown, collected, grouped, without
+from glyphspline.cli.groups import grouped, without
 from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import Options
@@ -82,23 +82,6 @@ def test_options_of_a_file_win_over_a_preset(more: list[str], tmp_path: Path) ->
     assert runner.invoke(app, ["convert", FONT, "--text", "O", *given]).exit_code == 0
     options = json.loads((tmp_path / "out" / "run.json").read_text())["options"]
     assert (options["corners"], options["effort"]) == ("smooth", "best")
-
-
-@pytest.mark.parametrize(
-    ("given", "continuity"),
-    [
-        ({}, "c2"),
-        ({"formats": "otf,ufo"}, "g2"),
-        ({"formats": "otf,svg"}, "c2"),
-        ({"formats": "otf", "corners": "smooth"}, "c2"),
-        ({"in_place": True}, "g2"),
-        ({"layer": "new"}, "g2"),
-        ({"layer": "new", "formats": "svg"}, "c2"),
-        ({"in_place": True, "masters": True, "formats": "ttf"}, "c2"),
-    ],
-)
-def test_what_only_goes_into_fonts_and_sources_is_what_fonts_store(given: dict[str, Any], continuity: str) -> None:
-    assert collected(Options(), Shown(), given).continuity == continuity
 
 
 def test_a_value_is_made_of_what_is_given_and_printed_as_what_is_not_default() -> None:

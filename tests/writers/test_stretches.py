@@ -163,6 +163,27 @@ def test_cubics_of_all_masters_become_quadratics_without_a_new_kink(tmp_path: Pa
         assert stored["within_tolerance"]
 
 
+def test_an_arc_too_long_for_one_is_divided_where_it_is_level() -> None:
+    """Waves of half circles between two lines, smooth at every joint, and higher in another master."""
+    k, n = 4 / 3 * (np.sqrt(2) - 1), 13
+    quarters = []
+    for j in range(n):
+        x, up = 100.0 * j, 1 if j % 2 == 0 else -1
+        quarters += [(x, 50 * k * up), (x + 50 * (1 - k), 50 * up), (x + 50, 50 * up)]
+        quarters += [(x + 50 * (1 + k), 50 * up), (x + 100, 50 * k * up), (x + 100, 0)]
+    wave = np.array([(0.0, 0.0), *quarters, (100.0 * n, -400.0), (0.0, -400.0)])
+    points = np.stack([wave, wave * [1.0, 1.1]])
+    contour = MasterContour(points, np.array([*[3] * (2 * n), 1, 1, 1]))
+    font = open_font(FONTS / "variable-cff2.otf")
+    masters = replace(
+        font.masters("l"), regions=font.masters("l").regions[:1], advances=np.zeros(2), contours=(contour,)
+    )
+    (made,) = quadratic_masters(font, masters, Options(tolerance=0.5)).contours
+    turns = np.abs(turns_of(joint_controls(made.curve)))
+    assert made.within_tolerance
+    assert ((turns < 0.05) | (turns > 80)).all()
+
+
 def test_a_cff2_glyph_has_no_more_segments(tmp_path: Path) -> None:
     font = open_font(FONTS / "variable-cff2.otf")
     names = [name for name in font.glyph_names if font.masters(name).contours]

@@ -135,6 +135,27 @@ class Quadratic:
         if redrawn.bounds and self._ranges is None:  # the distance is measured from what is given
             self._given = redrawn.bounds[c]
         self._cut()
+        if redrawn.bounds and self._maybe is None:
+            self._divide()
+
+    def _divide(self) -> None:
+        """Divide arcs that are too far at a joint of theirs, whose point on the curve is stored: the level one, if any,
+        that is nearest to the middle. The grid has the directions of its handles.
+        """
+        legs = np.abs(self._contour.cubics()[:, :, 1] - self._contour.cubics()[:, :, 0])
+        slanted = (legs.min(axis=2) > LEVEL * legs.max(axis=2)).any(axis=0)
+        while True:
+            every = zip(spans_of(self._inner), self._fits, strict=True)
+            far = [span for span, each in every if len(span) > 1 and each and self._misses(each)]
+            if not far:
+                return
+            for span in far:
+                middle = np.abs(np.arange(1, len(span)) - len(span) / 2)
+                self._inner[span[1 + np.lexsort((middle, slanted[span[1:]]))[0]]] = False
+            self._cut()
+
+    def _misses(self, fitted: Fitted) -> bool:
+        return fitted.distance > self._tolerance - self._given
 
     def _cut(self) -> None:
         """Cut the contour into its lines and arcs, and fit these."""
@@ -219,12 +240,11 @@ class Quadratic:
         most = None
         if self._fewest and self._maybe is not None:
             most = len(self._maybe.on) if self._ranges is None or arc.closed else len(self._points_of(k)) - 1
-        near = self._tolerance - self._given
         key = tuple(each.tobytes() if isinstance(each, np.ndarray) else each for each in astuple(arc))
         if key not in self._known:
-            self._known[key] = fit(arc, self._weights, near, self._rounded, most)
+            self._known[key] = fit(arc, self._weights, self._tolerance - self._given, self._rounded, most)
         self._fits[k] = found = self._known[key]
-        if found is None or (self._maybe is not None and found.distance > near):
+        if found is None or (self._maybe is not None and self._misses(found)):
             self._keep(k)
 
     def _counts(self) -> list[int]:
@@ -351,7 +371,7 @@ class Quadratic:
     def _is_far(self, joint: int) -> bool:
         """Whether an arc that ends at a joint, or goes through it, is too far."""
         every = zip(spans_of(self._inner), self._fits, strict=True)
-        far = [span for span, each in every if each is not None and each.distance > self._tolerance]
+        far = [span for span, each in every if each is not None and self._misses(each)]
         return any(joint in span or joint == (span[-1] + 1) % len(self._inner) for span in far)
 
     def _aimed(self, k: int, most: float) -> tuple[bool, FloatArray, int] | None:
@@ -447,11 +467,18 @@ def cut(
     ends = rounded(cubics[:, starts, 0])
     straight = [len(span) == 1 and degrees[span[0]] == 1 for span in spans]
     level = np.array([np.abs(turns(master, 1e-9)) for master in cubics]).max(axis=0)[starts] < LEVEL
+    tangents = cubics[:, starts, 1] - cubics[:, starts, 0]
+    tangents[np.abs(tangents) < LEVEL * np.abs(tangents).max(axis=2, keepdims=True)] = 0.0
     arcs = []
     for k, span in enumerate(spans):
-        here, there, beyond = ends[:, k], ends[:, (k + 1) % len(ends[0])], ends[:, (k + 2) % len(ends[0])]
         following = (k + 1) % len(spans)
-        leaving = here - ends[:, k - 1] if straight[k - 1] and level[k] else None
-        arriving = there - beyond if straight[following] and level[following] else None
-        arcs.append(Arc(cubics[:, span], False, np.stack([here, there], axis=1), straight[k], leaving, arriving))
+        here, there, beyond = ends[:, k], ends[:, following], ends[:, (k + 2) % len(spans)]
+        leaving = here - ends[:, k - 1] if straight[k - 1] else tangents[:, k]
+        arriving = there - beyond if straight[following] else -tangents[:, following]
+        arcs.append(
+            Arc(
+                cubics[:, span], False, np.stack([here, there], axis=1), straight[k],
+                leaving if level[k] else None, arriving if level[following] else None,
+            )
+        )  # fmt: skip
     return arcs
