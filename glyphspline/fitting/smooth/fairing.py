@@ -181,7 +181,7 @@ def _fair(
                 first[s, c, 0], first[s, c, 1] = slope * nx, slope * ny
                 second[s, c, 0], second[s, c, 1] = bend * nx, bend * ny
                 slopes[s, c] = value * (nx * ex + ny * ey)
-    moves, delta, weight = np.zeros(n + 3), np.zeros(n + 3), BARRIER
+    moves, delta, steps, weight = np.zeros(n + 3), np.zeros(n + 3), np.zeros(m), BARRIER
     for _ in range(STEPS):
         band, right = _equations(
             jets, first, second, away, most, slopes, moving, order, unknowns, FLAT * unit / length, near, weight
@@ -191,14 +191,15 @@ def _fair(
             delta[c] = right[order[c]] if order[c] >= 0 else 0.0
         share = 1.0
         for s in range(m):
-            j, move = s // SAMPLES, 0.0
+            j = s // SAMPLES
             if not moving[j]:
                 continue
+            steps[s] = 0.0
             for c in range(4):
-                move += slopes[s, c] * delta[j + c]
-            room = most[s] - away[s] if move > 0 else most[s] + away[s]
-            if abs(move) * share > 0.9 * room:
-                share = 0.9 * room / abs(move)
+                steps[s] += slopes[s, c] * delta[j + c]
+            room = most[s] - away[s] if steps[s] > 0 else most[s] + away[s]
+            if abs(steps[s]) * share > 0.9 * room:
+                share = 0.9 * room / abs(steps[s])
         for c in range(n + 3):
             delta[c] *= share
             moves[c] += delta[c]
@@ -210,7 +211,7 @@ def _fair(
                 jets[s, 1] += d * first[s, c, 1]
                 jets[s, 2] += d * second[s, c, 0]
                 jets[s, 3] += d * second[s, c, 1]
-                away[s] += d * slopes[s, c]
+            away[s] += share * steps[s]
         weight *= WEAKER
     for i in range(n):
         if not held[i]:
@@ -253,10 +254,10 @@ def _equations(
         if not moving[s // SAMPLES] and s % SAMPLES > 0:
             continue
         dx, dy, ax, ay = jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3]
-        square = dx * dx + dy * dy
-        cube = 1.0 / (square * np.sqrt(square))
+        inverse = 1.0 / (dx * dx + dy * dy)
+        cube = inverse * np.sqrt(inverse)
         kappa[s] = (dx * ay - dy * ax) * cube
-        whole = 3 * kappa[s] / square
+        whole = 3 * kappa[s] * inverse
         p, q = ay * cube - whole * dx, -ax * cube - whole * dy
         for c in range(4):
             by[s, c] = p * first[s, c, 0] + q * first[s, c, 1] + (dx * second[s, c, 1] - dy * second[s, c, 0]) * cube
@@ -278,7 +279,8 @@ def _equations(
                 right[j + a] -= w * change * row[a]
                 for b in range(a, 5):
                     cyclic[j + a, b - a] += w * row[a] * row[b]
-            z, unit = away[s] / most[s], 1.0 / most[s]
+            unit = 1.0 / most[s]
+            z = away[s] * unit
             inside = 1 / (1 - z * z)
             slope, bend = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
             for a in range(4):
@@ -327,15 +329,18 @@ def _solve(band: FloatArray, x: FloatArray) -> None:
     """
     n = len(x) - BAND
     for i in range(n):
+        row, inverse = band[i], 1.0 / band[i, 0]
         for r in range(1, BAND + 1):
-            share = band[i, r] / band[i, 0]
-            x[i + r] -= share * x[i]
-            for c in range(r, BAND + 1):
-                band[i + r, c - r] -= share * band[i, c]
+            share, other = row[r] * inverse, band[i + r]
+            if share != 0.0:
+                x[i + r] -= share * x[i]
+                for c in range(r, BAND + 1):
+                    other[c - r] -= share * row[c]
     for i in range(n - 1, -1, -1):
+        row, value = band[i], x[i]
         for r in range(1, BAND + 1):
-            x[i] -= band[i, r] * x[i + r]
-        x[i] /= band[i, 0]
+            value -= row[r] * x[i + r]
+        x[i] = value / row[0]
 
 
 @compiled
