@@ -336,7 +336,13 @@ def _closed(source: MasterContour, found: SmoothCurve, fits: _Fits) -> MastersCo
 
 
 def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
-    """The result of a contour as fonts store it."""
+    """The result of a contour as fonts store it; one that is too far on the grid stays the source's, off it."""
+    if found.bound > fits.tolerance:
+        curved, joints = int((source.degrees > 1).sum()), np.zeros(len(source), dtype=bool)
+        return MastersContourResult(
+            source, source, joints, iterations=None, rate_bound=None, deviation_bound=0.0, within_tolerance=True,
+            kept=curved, regular=is_regular(source, fits.mixes),
+        )  # fmt: skip
     precision, degrees = fits.options.precision, found.curves[0].degrees
     curve = MasterContour(np.stack([each.rounded(precision).points for each in found.curves]), degrees)
     cubics, given = curve.cubics(), source.cubics()

@@ -175,6 +175,16 @@ def test_what_is_fitted_for_fonts_goes_back_point_for_point(tmp_path: Path) -> N
     assert sum(map(len, written)) < sum(len(with_extrema(contour.curve, em)) for contour in fitted.contours)
 
 
+def test_what_no_whole_units_are_near_keeps_its_decimals(tmp_path: Path) -> None:
+    path = family(tmp_path)
+    for glif in tmp_path.rglob("*.glif"):
+        glif.write_text(re.sub(r'(<point x="-?\d+)"', r'\1.3"', glif.read_text()))
+    before = files(tmp_path)
+    options = gs.Options(corners="sharp", continuity="g2", precision=0, tolerance=0.1)
+    run(path, tmp_path / "out", RunSpec(options, in_place=True, masters=True))
+    assert {name: data for name, data in files(tmp_path).items() if not name.startswith("out/")} == before
+
+
 @pytest.mark.parametrize("make", [family, glyphs_file(2), glyphs_file(3)], ids=["designspace", "Glyphs 2", "Glyphs 3"])
 @pytest.mark.parametrize("layer", [None, "glyphspline"])
 def test_masters_stay_compatible_and_nothing_else_changes(

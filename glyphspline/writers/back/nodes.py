@@ -64,7 +64,11 @@ def replaced(
         smooth = [flags.get((x, y), bool(flag)) for (x, y), flag in zip(places, smooth, strict=True)]
     made = [_nodes(contour, smooth, shift) for contour in rounded]
     before = [_from_the_curve(nodes) for nodes in old]
-    if [[node[:2] for node in nodes] for nodes in made] == [[node[:2] for node in nodes] for nodes in before]:
+    as_given = [_nodes(contour, smooth, shift) for contour in new]  # what stays may have more decimals
+    if any(
+        [[node[:2] for node in nodes] for nodes in each] == [[node[:2] for node in nodes] for nodes in before]
+        for each in (made, as_given)
+    ):
         return None
     found = []
     for nodes, its, places in zip(made, before, held, strict=True):
