@@ -134,6 +134,7 @@ class Quadratic:
                 self._ranges = ranges_of(self._contour, self._inner, self._source)
         if redrawn.bounds and self._ranges is None:  # the distance is measured from what is given
             self._given = redrawn.bounds[c]
+        self._divided: list[int] = []
         self._cut()
         if redrawn.bounds and self._maybe is None:
             self._divide()
@@ -151,7 +152,9 @@ class Quadratic:
                 return
             for span in far:
                 middle = np.abs(np.arange(1, len(span)) - len(span) / 2)
-                self._inner[span[1 + np.lexsort((middle, slanted[span[1:]]))[0]]] = False
+                joint = int(span[1 + np.lexsort((middle, slanted[span[1:]]))[0]])
+                self._divided.append(joint)
+                self._inner[joint] = False
             self._cut()
 
     def _misses(self, fitted: Fitted) -> bool:
@@ -162,7 +165,7 @@ class Quadratic:
         contour, inner = self._contour, self._inner
         cubics = contour.cubics()
         ring = [Arc(cubics, True, cubics[:, :2, 0])]
-        self._arcs = ring if inner.all() else cut(cubics, contour.degrees, inner, self._rounded)
+        self._arcs = ring if inner.all() else cut(cubics, contour.degrees, inner, self._rounded, self._divided)
         self._kept = [False] * len(self._arcs)
         if self._ranges is not None:
             every = self._source.cubics()
@@ -458,9 +461,13 @@ def steps_of(masters: Masters, points: FloatArray) -> IntArray:
 
 
 def cut(
-    cubics: FloatArray, degrees: IntArray, inner: BoolArray, rounded: Callable[[FloatArray], FloatArray]
-) -> list[Arc]:
-    """The lines and arcs of a contour with corners, from its first end on, and their ends rounded."""
+    cubics: FloatArray, degrees: IntArray, inner: BoolArray, rounded: Callable[[FloatArray], FloatArray],
+    divided: Sequence[int] = (),
+) -> list[Arc]:  # fmt: skip
+    """The lines and arcs of a contour with corners, from its first end on, and their ends rounded.
+
+    At joints that are ``divided``, inside what could be an arc, both arcs have the source's tangent.
+    """
     starts = np.flatnonzero(~inner)
     counts = np.diff([*starts, starts[0] + len(degrees)])
     spans = [np.arange(start, start + count) % len(degrees) for start, count in zip(starts, counts, strict=True)]
@@ -473,12 +480,10 @@ def cut(
     for k, span in enumerate(spans):
         following = (k + 1) % len(spans)
         here, there, beyond = ends[:, k], ends[:, following], ends[:, (k + 2) % len(spans)]
-        leaving = here - ends[:, k - 1] if straight[k - 1] else tangents[:, k]
-        arriving = there - beyond if straight[following] else -tangents[:, following]
-        arcs.append(
-            Arc(
-                cubics[:, span], False, np.stack([here, there], axis=1), straight[k],
-                leaving if level[k] else None, arriving if level[following] else None,
-            )
-        )  # fmt: skip
+        leaving = arriving = None
+        if level[k] and (straight[k - 1] or starts[k] in divided):
+            leaving = here - ends[:, k - 1] if straight[k - 1] else tangents[:, k]
+        if level[following] and (straight[following] or starts[following] in divided):
+            arriving = there - beyond if straight[following] else -tangents[:, following]
+        arcs.append(Arc(cubics[:, span], False, np.stack([here, there], axis=1), straight[k], leaving, arriving))
     return arcs
