@@ -56,7 +56,7 @@ def mending_page(
         rows.append([
             change.glyph, kinds.index(change.kind), change.contour, change.segment,
             *[round(value, 2) for value in change.point], with_unit(change.before, UNITS[change.kind]),
-            "" if change.after is None else with_unit(change.after, "°"), moved_words(change),
+            "" if change.after is None else f"{change.after:.2f}°", moved_words(change),
             "" if change.distance is None else f"{rounded_up(change.distance, 3):g}",
             left_words(change), number, *worst,
         ])  # fmt: skip
