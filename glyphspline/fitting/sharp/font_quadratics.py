@@ -702,6 +702,9 @@ def fit_contour(
             j += 1
         if given.line[i]:
             points[count], on[count] = np.rint(cubics[i, 0]), True
+            for end in (0, 3):
+                x, y = cubics[i, end]
+                reached = max(reached, length(np.rint(x) - x, np.rint(y) - y))
             count += 1
         else:
             more, far = fit_run(given, i, j, tolerance, points[count:], on[count:])

@@ -342,7 +342,8 @@ def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec:
     if summary.largest_error is not None:
         remark += f", within {rounded_up(summary.largest_error, 3):.3g} units of the source"
     if not spec.options.is_for_fonts:
-        remark += f", as C2 splines (--continuity g2: fewer points), {summary.extrema} points added at extrema"
+        splines = f", {summary.extrema} points added at extrema" if flavour == "otf" else ", as quadratics near these"
+        remark += f", as C2 splines (--continuity g2: fewer points){splines}"
     if summary.beyond:
         remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"
     if len((new := open_font(path)).glyph_names) == len(source.glyph_names):

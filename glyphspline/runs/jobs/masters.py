@@ -29,7 +29,7 @@ from ...readers.single_fonts import axis_of
 from ...report import FOLDER as GALLERY
 from ...report.data import FULL, along_axes, glyph_text, plain
 from ...types import MadeOnDemand, counted, listed, rounded_up
-from ...writers.font.font_glyphs import Flavour
+from ...writers.font.font_glyphs import SHARE, Flavour
 from ...writers.font.master_deltas import Redrawn, StoredGlyph, Tally, bound_of
 from ...writers.formats import OURS
 from ..engine import Job, Observer, reason
@@ -48,9 +48,6 @@ if TYPE_CHECKING:
 FORMATS = (*OURS, GALLERY, "ufo", "otf", "ttf")
 """Formats of a run over masters: drawings of the default, a gallery with sliders, a designspace with its UFOs, and
 variable fonts."""
-
-SHARE = 0.5
-"""Share of the tolerance that the curves may use where quadratics are fitted to them, which take the rest."""
 
 UNMATCHED = "unmatched"
 """The folder of pictures of glyphs whose outlines in single fonts cannot be matched."""

@@ -37,7 +37,6 @@ from .font_glyphs import (
     drop_endless,
     parts_of,
     put_string,
-    quadratic_result,
     stays,
     users,
 )
@@ -131,13 +130,6 @@ def to_font(
     return file.getvalue(), FontSummary(family, len(errors), largest, tuple(beyond), added)
 
 
-def drawn_as(result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None, extrema: bool) -> Drawn:
-    """A converted glyph ready to be stored; see :func:`.font_glyphs.drawn_result`."""
-    if flavour == "ttf" and result.options.is_for_fonts:
-        return quadratic_result(result, tolerance)
-    return drawn_result(result, tolerance, flavour, width, extrema)
-
-
 class _InPlace:
     """New glyphs in a copy of the source's own table."""
 
@@ -166,7 +158,7 @@ class _InPlace:
         self.is_g2 = self.is_g2 or result.options.is_for_fonts
         if stays(result, self.flavour):
             return Drawn(None, None, 0.0)
-        drawn = drawn_as(result, tolerance, self.flavour, self._width(name), extrema)
+        drawn = drawn_result(result, tolerance, self.flavour, self._width(name), extrema)
         if self.flavour == "ttf":
             self.new[name] = drawn.data
         else:
@@ -227,7 +219,7 @@ class _Rebuilt:
 
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         outline = result.outline
-        drawn = drawn_as(result, tolerance, self.flavour, round(outline.advance), extrema)
+        drawn = drawn_result(result, tolerance, self.flavour, round(outline.advance), extrema)
         return self._put(drawn, outline)
 
     def _put(self, drawn: Drawn, outline: Outline) -> Drawn:

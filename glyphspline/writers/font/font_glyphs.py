@@ -21,6 +21,7 @@ from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates, flagOnCurve
 from ...curves.bezier import as_cubic
 from ...curves.integrals import area
 from ...errors import GlyphsplineError
+from ...fitting.options import Options
 from ...fitting.results import GlyphResult
 from ...outlines.extrema import extremal_pieces
 from ...outlines.outline import Contour, Outline
@@ -35,11 +36,15 @@ FINE = 64
 """Parts of a unit to which CFF coordinates are rounded where whole units would break the tolerance. Sums of such
 numbers are exact in the format's 16.16 fixed point."""
 
-QUADRATIC_SHARE = 0.1
-"""Least share of the tolerance for the approximation of cubics by quadratics."""
+SHARE = 0.2
+"""Of the tolerance: what curves may use that quadratics are made of, and the least that these have. With 0.5 they have
+a tenth more points, in 4 faces, and the grid sometimes none near enough."""
 
 GRID = 1e-6
 """Distance from whole units, in font units, up to which coordinates are whole but for rounding errors."""
+
+FONTS = Options(corners="sharp", continuity="g2")
+"""How outlines that were not converted become quadratics."""
 
 LIMIT = 32767
 """Largest coordinate of a font."""
@@ -62,10 +67,10 @@ class Drawn:
 def fitting_tolerance(tolerance: float, flavour: Flavour) -> float:
     """Tolerance for the fit such that the written font stays within ``tolerance``.
 
-    An OTF has fractions, so almost nothing is subtracted. For a TTF the rounding and the approximation by quadratics
-    are; if the tolerance is too small for those, the fit has half of it and glyphs are reported as beyond it.
+    An OTF has fractions, so almost nothing is subtracted; if the tolerance is too small for those, the fit has half of
+    it, and glyphs are reported as beyond it. For a TTF quadratics on the grid take the most.
     """
-    left = tolerance - ROUNDING / FINE if flavour == "otf" else (1 - QUADRATIC_SHARE) * tolerance - ROUNDING
+    left = tolerance - ROUNDING / FINE if flavour == "otf" else SHARE * tolerance
     return left if left > 0 else tolerance / 2
 
 
@@ -74,33 +79,39 @@ def drawn_result(
 ) -> Drawn:
     """A converted glyph within ``tolerance`` of its source; ``width`` is for :func:`char_string`.
 
-    With ``extrema`` points are added at extrema, but not where rounding them moves a segment farther than the tolerance
-    leaves room for and than rounding it whole does.
+    Quadratics have as few points as follow the result; with continuity "g2" the source itself, of which what need not
+    change stays. In CFF, with ``extrema``, points are added at extrema, but not where rounding them moves a segment
+    farther than the tolerance leaves room for and than rounding it whole does.
     """
-    name, em = result.outline.name, result.outline.metrics.units_per_em
-    g2 = result.options.is_for_fonts
-    exact = oriented([contour.curve for contour in result.contours], flavour)
+    outline, g2 = result.outline, result.options.is_for_fonts
+    name, em = outline.name, outline.metrics.units_per_em
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
     deviation = max((value for value in measured if value is not None), default=0.0)
     room = max(tolerance - deviation, 0.0) if known else math.inf
+    if flavour == "ttf" and g2:
+        as_is = (outline.arrays.degrees < 3).all()
+        contours = list(outline.contours) if as_is else oriented(outline.contours, flavour)
+        data, error = in_quadratics(contours, result.options, tolerance, em, name)
+        return Drawn(data, bounds_of(data, []), error + outline.snapped)
+    exact = oriented([contour.curve for contour in result.contours], flavour)
     split = [extremal_pieces(c, em) if extrema and not g2 else [[part] for part in c.segments()] for c in exact]
+    if flavour == "ttf":
+        contours = [Contour.from_segments(chain.from_iterable(pieces)) for pieces in split]
+        near = max(room if known else 0.0, SHARE * tolerance)
+        data, error = in_quadratics(contours, result.options, near, em, name)
+    else:
 
-    def rounded(parts: int) -> tuple[list[Contour], float]:
-        contours = [chosen(*each, parts, room) for each in zip(exact, split, strict=True)]
-        return contours, displacement(chain.from_iterable(map(as_stored, contours)), parts)
+        def rounded(parts: int) -> tuple[list[Contour], float]:
+            contours = [chosen(*each, parts, room) for each in zip(exact, split, strict=True)]
+            return contours, displacement(chain.from_iterable(map(as_stored, contours)), parts)
 
-    contours, error = rounded(1)
-    # On the grid already, but for stretches that stay as a source has them that is not.
-    parts = 1 if error <= (GRID if g2 else room) else FINE
-    if flavour == "otf":
+        contours, error = rounded(1)
+        # On the grid already, but for stretches that stay as a source has them that is not.
+        parts = 1 if error <= (GRID if g2 else room) else FINE
         if parts == FINE:
             contours, error = rounded(FINE)
         data = char_string(contours, width, parts, name)
-    else:
-        step = max(room - ROUNDING if known else 0.0, QUADRATIC_SHARE * tolerance)
-        data = quadratic_glyph(contours, step, name)
-        error = ROUNDING + (step if any((c.degrees == 3).any() for c in contours) else 0.0)
     added = sum(map(len, contours)) - sum(map(len, exact))
     return Drawn(data, bounds_of(data, contours), deviation + error if known else None, added)
 
@@ -145,11 +156,13 @@ def on_grid(points: FloatArray, parts: int) -> FloatArray:
 
 def drawn_outline(outline: Outline, flavour: Flavour) -> Drawn:
     """The source outline of a glyph that was not converted, in the other format."""
-    contours = oriented(outline.contours, flavour)
+    contours, em = oriented(outline.contours, flavour), outline.metrics.units_per_em
     if flavour == "otf":
         data = char_string(contours, round(outline.advance), 1, outline.name)
+    elif (outline.arrays.degrees < 3).all():
+        data = cut_alone(contours, 0.0, outline.name)
     else:
-        data = quadratic_glyph(contours, outline.metrics.units_per_em / 2000, outline.name)
+        data, _ = in_quadratics(contours, FONTS, em / 1000, em, outline.name)
     return Drawn(data, bounds_of(data, contours), None)
 
 
@@ -189,8 +202,30 @@ def doubles_back(contour: Contour) -> bool:
     return bool((opposite & lines & np.roll(lines, 1)).any())
 
 
-def quadratic_glyph(contours: Sequence[Contour], step: float, name: str) -> Any:
-    """A TrueType glyph whose quadratics are within ``step`` of the contours before they are rounded."""
+def in_quadratics(
+    contours: Sequence[Contour], options: Options, tolerance: float, em: float, name: str
+) -> tuple[Glyph, float]:
+    """A glyph as quadratics with as few points as follow its contours, and a bound of their distance from these.
+
+    Contours of lines and quadratics keep what need not change. Where whole units do not have others near enough, each
+    cubic becomes some by itself.
+    """
+    from ...fitting.sharp.font_fit import quadratic_points  # compiles more than others need
+
+    arrays = Outline(name, contours=[each for each in contours if len(each)]).arrays
+    check_size(arrays.points.tolist(), name)
+    found, distance = quadratic_points(arrays, options, tolerance, em)
+    if distance > tolerance:
+        step = max(tolerance - ROUNDING, SHARE * tolerance / 2)
+        return cut_alone(contours, step, name), ROUNDING + step
+    points = np.concatenate([np.empty((0, 2)), *(points for points, _ in found)]).astype(np.int64)
+    check_size(points.tolist(), name)
+    on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in found)])
+    return simple_glyph(points, on, (np.cumsum([len(on) for _, on in found]) - 1).tolist(), False), distance
+
+
+def cut_alone(contours: Sequence[Contour], step: float, name: str) -> Glyph:
+    """A TrueType glyph in which each cubic is some quadratics by itself, within ``step`` before these are rounded."""
     collected = TTGlyphPen(None)
     pen = Cu2QuPen(collected, step, all_quadratic=True)
     for contour in contours:
@@ -199,30 +234,6 @@ def quadratic_glyph(contours: Sequence[Contour], step: float, name: str) -> Any:
     collected.points = [(round(x, 6), round(y, 6)) for x, y in collected.points]
     check_size(collected.points, name)
     return collected.glyph()
-
-
-def quadratic_result(result: GlyphResult, tolerance: float) -> Drawn:
-    """A glyph as quadratics with as few points as follow it.
-
-    Outlines of lines and quadratics keep what need not change. Where whole units do not have others near enough, each
-    cubic becomes some by itself.
-    """
-    from ...fitting.sharp.font_fit import quadratic_points  # compiles more than others need
-
-    outline = result.outline
-    curved = (outline.arrays.degrees > 2).any()
-    source = [each for each in (oriented(outline.contours, "ttf") if curved else outline.contours) if len(each)]
-    arrays, em = Outline(outline.name, contours=tuple(source)).arrays, outline.metrics.units_per_em
-    contours, distance = quadratic_points(arrays, result.options, tolerance, em)
-    if distance > tolerance:
-        step = max(tolerance - ROUNDING, QUADRATIC_SHARE * tolerance)
-        data = quadratic_glyph(source, step, outline.name)
-        return Drawn(data, bounds_of(data, []), ROUNDING + step + outline.snapped)
-    points = np.concatenate([np.empty((0, 2)), *(points for points, _ in contours)]).astype(np.int64)
-    check_size(points.tolist(), outline.name)
-    on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in contours)])
-    data = simple_glyph(points, on, (np.cumsum([len(on) for _, on in contours]) - 1).tolist(), False)
-    return Drawn(data, bounds_of(data, []), distance + outline.snapped)
 
 
 def simple_glyph(points: IntArray, on: BoolArray, ends: list[int], overlap: bool) -> Glyph:
