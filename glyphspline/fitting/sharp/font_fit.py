@@ -258,22 +258,16 @@ def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
 
 
 def _findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 7) what a check finds at joints and in segments, and all turns; see :data:`...checks.segments.WHAT`."""
+    """(n, 7) what a check finds at joints and in segments, see :data:`...checks.segments.WHAT`; and as kinks joints of
+    curves that turn less, which a check takes for rounding's."""
     segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
-    found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits), _turning(contours)])
+    line = segments.degrees == 1
+    sizes = np.abs(np.angle(segments.last[segments.before].conj() * segments.first))
+    joints = np.flatnonzero((sizes > KINKED) & (sizes < CORNER) & ~(line & line[segments.before]))
+    c = np.searchsorted(segments.offsets, joints, side="right") - 1
+    turning = rows(KINK, c, joints - segments.offsets[c], 0.0)
+    found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits), turning])
     return found[found[:, WHAT] != JUMP]
-
-
-def _turning(contours: ContourArrays) -> FloatArray:
-    """(n, 7) joints of curves that turn, also where a check takes that for rounding's."""
-    found = []
-    for c in range(contours.num_contours):
-        part = contours.part(c, c + 1)
-        line = part.degrees == 1
-        sizes = np.abs(turns(all_cubics(part), NO_HANDLE))
-        joints = np.flatnonzero((sizes > KINKED) & (sizes < CORNER) & ~(line & np.roll(line, 1)))
-        found.append(rows(KINK, c, joints, 0.0))
-    return np.concatenate(found)
 
 
 def _new_findings(

@@ -19,12 +19,12 @@ from ...curves.cubics import hidden_extrema, length
 from ...types import FloatArray
 from .corners import Joints
 from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, arriving_curvature, end_jump, leaving_curvature
-from .nearness import feet, sample_form, squares
+from .nearness import feet, reduced, sample_form, squares
 
 SWEEPS = 4
 """How often all nodes are visited; few move in the fourth."""
 
-TURN, JUMP = 0.0080, 0.095
+TURN, JUMP = 0.0080, 0.15
 """Turn of a joint, in radians, and jump of curvature that are to be avoided."""
 
 TURN_PRICE, JUMP_PRICE = 100.0, 2.0
@@ -43,18 +43,21 @@ class Measure(NamedTuple):
 
     Attributes:
         exact: (r, 4, 2) where they were. own, rest: (r, 8, 9), (r,) of :func:`.nearness.sample_form`.
+        form, base: (2, 4, 5), (2,) the same for the points of the cubics before and after a node that move with it.
     """
 
     exact: FloatArray
     own: FloatArray
     rest: FloatArray
+    form: FloatArray
+    base: FloatArray
 
 
 @compiled
 def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> None:
     """Round the cubics of a run, whose first node is joint i of the outline."""
     r, P = len(run.P), run.P
-    measure, c = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r)), np.empty((3, 2))
+    measure, c = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r), np.empty((2, 4, 5)), np.empty(2)), np.empty((3, 2))
     for s in range(r):
         if run.held[s]:
             continue
@@ -122,12 +125,13 @@ def cost_at(run: Run, k: int, before: int, after: int, measure: Measure, em: flo
     At least ``least`` where it would be that much.
     """
     r, total = len(run.P), joint_cost(run, k, em, least)
+    for side, s in enumerate((before, after)):
+        if s >= 0 and total < least:
+            a, b = 2 - 2 * side, 4 - 2 * side
+            total += squares(run.P[s, a:b], measure.exact[s, a:b], measure.form[side], measure.base[side])
     for s in (before, after):
         if s >= 0 and total < least and hidden_extrema(run.P[s]) > run.extrema[s]:
             total += HIDDEN_PRICE
-    for s in (before, after):
-        if s >= 0 and total < least:
-            total += squares(run.P[s], measure.exact[s], measure.own[s], measure.rest[s])
     if total < least and before >= 0 and (run.closed or k > 1):
         total += joint_cost(run, (k - 1) % r, em, least - total)
     if total < least and after >= 0 and (run.closed or k + 1 < r):
@@ -236,6 +240,11 @@ def improve(
         across = 1 if abs(run.T[k, 0]) > 0.5 else 0
         start[0, across] = start[2, across] = start[1, across]
         put_points(run, before, after, start, k)
+    for side, s in enumerate((before, after)):
+        if s >= 0:
+            measure.base[side] = reduced(
+                P[s], measure.exact[s], measure.own[s], measure.rest[s], 2 - 2 * side, measure.form[side]
+            )
     least, changed = cost_at(run, k, before, after, measure, em, np.inf), False
     turns = run.kind[k] == FREE and before >= 0 and after >= 0
     for code in range(candidates(run.kind[k], run.T[k, 0], run.T[k, 1], start, before >= 0, after >= 0, room)):
@@ -263,13 +272,15 @@ def side_places(
         level: the axis on which the handle there stays level; -1 if it may turn. form, exact, rest: see
             :func:`.nearness.squares`. far: the vector in which the next cubic begins at the other end, its curvature
             there, and whether that end's handle stays.
-        found: (1225, 8) receives the cost, the curvature, the handle's vector, and both points.
+        found: (2025, 8) receives the cost, the curvature, the handle's vector, and both points.
 
     Returns:
         Their number.
     """
     n, h, b, f = (0, 1, 2, 3) if end == 0 else (3, 2, 1, 0)
-    p, own, count = run.P[s], run.P[s].copy(), 0
+    p, own, count, part = run.P[s], run.P[s].copy(), 0, np.empty((4, 5))
+    own[n, 0], own[n, 1] = p[n, 0] + dx, p[n, 1] + dy
+    base = reduced(own, exact, form, rest, 1, part)
     ux, uy, beyond, stays = far
     x, y = p[b, 0] - p[f, 0], p[b, 1] - p[f, 1]
     was, jumped = abs(np.arctan2(x * uy - y * ux, -(x * ux + y * uy))), False
@@ -284,14 +295,13 @@ def side_places(
             if turn > max(was, NO_KINK) or turn < min(was, 0.22):
                 continue
         size = max(length(bx, by), 1e-9)
-        own[n, 0], own[n, 1] = p[n, 0] + dx, p[n, 1] + dy
-        for code in range(-1, 13 if level >= 0 else 49):
+        for code in range(-1, 13 if level >= 0 else 81):
             if level >= 0:
                 u, v = (0.0, 0.0) if code < 0 else (code - 6.0, 0.0)
                 u, v = (v, u) if level == 0 else (u, v)
                 u, v = u + dx, v + dy
             else:
-                u, v = (0.0, 0.0) if code < 0 else (code % 7 - 3.0, code // 7 - 3.0)
+                u, v = (0.0, 0.0) if code < 0 else (dx + code % 9 - 4.0, dy + code // 9 - 4.0)
             if code < 0 and (step >= 0 or dx != 0.0 or dy != 0.0):
                 continue
             own[h, 0], own[h, 1] = p[h, 0] + u, p[h, 1] + v
@@ -306,7 +316,7 @@ def side_places(
                 continue
             if jump and not jumped and beyond < np.inf:
                 continue
-            cost = squares(own, exact, form, rest)
+            cost = squares(own[1:3], exact[1:3], part, base)
             if cost < FAREST and hidden_extrema(own) <= run.extrema[s]:
                 found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / length(ax, ay) ** 3
                 found[count, 2], found[count, 3] = ax, ay
@@ -334,7 +344,7 @@ def meet(run: Run, k: int, joints: Joints, i: int, tolerance: float, em: float, 
     """Let curvatures meet at a node, by the nearest places of it, its handles, and the handles beyond these.
 
     Args:
-        room: (2, 1225, 8) of work.
+        room: (2, 2025, 8) of work.
 
     Returns:
         Whether there are such places.
@@ -355,8 +365,8 @@ def meet(run: Run, k: int, joints: Joints, i: int, tolerance: float, em: float, 
             level = axis
     one, two, least = beyond_end(run, a, 0), beyond_end(run, q, 1), np.inf
     best = np.empty((5, 2))
-    for code in range(5 if level >= 0 else 9):
-        dx, dy = (code - 2.0, 0.0) if level >= 0 else (code % 3 - 1.0, code // 3 - 1.0)
+    for code in range(5 if level >= 0 else 25):
+        dx, dy = (code - 2.0, 0.0) if level >= 0 else (code % 5 - 2.0, code // 5 - 2.0)
         if level == 0:
             dx, dy = dy, dx
         before = side_places(run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, room[0])

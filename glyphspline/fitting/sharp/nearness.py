@@ -138,6 +138,35 @@ def squares(points: FloatArray, exact: FloatArray, own: FloatArray, rest: float)
 
 
 @compiled
+def reduced(points: FloatArray, exact: FloatArray, own: FloatArray, rest: float, lo: int, form: FloatArray) -> float:
+    """The form of :func:`squares` for two neighbouring points of a cubic (4, 2), while the other two stay.
+
+    Args:
+        lo: the first of the two. form: (4, 5) receives theirs.
+
+    Returns:
+        Its rest.
+    """
+    for u in range(8):
+        move = points[u // 2, u % 2] - exact[u // 2, u % 2]
+        mine = 0 <= u - 2 * lo < 4
+        if mine:
+            form[u - 2 * lo, 4] = own[u, 8]
+        else:
+            rest -= 2 * own[u, 8] * move
+        for v in range(8):
+            away = points[v // 2, v % 2] - exact[v // 2, v % 2]
+            if 0 <= v - 2 * lo < 4:
+                if mine:
+                    form[u - 2 * lo, v - 2 * lo] = own[u, v]
+            elif mine:
+                form[u - 2 * lo, 4] -= own[u, v] * away
+            else:
+                rest += own[u, v] * move * away
+    return rest
+
+
+@compiled
 def certified(
     V: int, chain: FloatArray, hints: FloatArray, stays: BoolArray, skip: BoolArray, closed: bool, other: FloatArray,
     arc: FloatArray, tolerance: float,
