@@ -51,10 +51,10 @@ SCRATCH = OWN + 27
 PAD = 4
 """Knot intervals kept before the first and after the last one."""
 
-POLYGON, COUNT, LANE, INTERVALS, FINISHED, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS, ORDER, TOTAL = range(11)
+TABLE = 9
+POLYGON, COUNT, LANE, INTERVALS, FINISHED, PASSES, SEARCHED, UNCERTIFIED, FALLBACKS = range(TABLE)
 """Columns of ``Group.table``: index of the polygon, vertices, first lane, where in ``Group.h`` its intervals begin,
-whether it is done, passes, full searches, those not certified, fallbacks, its first row; and the passes in all of the
-polygon that had this row at first.
+whether it is done, passes, full searches, those not certified, fallbacks.
 """
 
 UNIT, KNOT_UNIT, LIMIT, LEAST, LARGEST, NATURAL = 0, 1, 2, 3, 4, 5
@@ -252,33 +252,3 @@ def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) ->
             at = owner // LANES * size + first + owner % LANES + HALO + i - owner
             for step in range(0, d * STRIDE, STRIDE):
                 P[b * size + to + step] = P[at + step]
-
-
-@compiled
-def close_ranks(group: Group, P: FloatArray, Q: FloatArray, slots: int) -> int:
-    """Move the polygons that are not done to the front of their block, in order; returns their number."""
-    table, numbers, ends, d = group.table, group.numbers, group.ends, group.ends.shape[1]
-    left, to = 0, 0
-    end = table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO
-    for q in range(slots):
-        if table[q, FINISHED]:
-            continue
-        lane, size = table[q, LANE], table[q, COUNT] + 2 * HALO
-        for fields in (group.blocks[:BLOCK], P[: d * STRIDE], Q[: d * STRIDE]):
-            back = np.uint64(lane - to)
-            for field in range(0, fields.shape[0], STRIDE):
-                for j in range(np.uint64(field + to), np.uint64(field + to + size)):
-                    fields[j] = fields[j + back]
-        for c in range(TOTAL):
-            table[left, c] = table[q, c]
-        for c in range(numbers.shape[1]):
-            numbers[left, c] = numbers[q, c]
-        for row in range(4):
-            for axis in range(d):
-                ends[4 * left + row, axis] = ends[4 * q + row, axis]
-        table[left, LANE] = to
-        left, to = left + 1, to + size
-    for field in range(0, BLOCK, STRIDE):
-        for j in range(np.uint64(field + to), np.uint64(field + end)):
-            group.blocks[j] = 0.0
-    return left

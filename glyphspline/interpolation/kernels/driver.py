@@ -3,7 +3,7 @@
 Short polygons are iterated in groups, side by side in one block (:mod:`.blocks`). The passes over a block are
 :mod:`.newton_simd` in the plane and :mod:`.gram_simd` in space. A pass reads control points from P and writes the next
 ones to N; then P and N change places. Results do not depend on the other polygons of a group. A polygon that is done is
-stored, and the lanes of the others are compacted.
+stored; its lanes go on until the group is done, at parameters that stay.
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ import numpy as np
 
 from ...arrays import grown
 from ...compiled import compiled, inlined
-from ...intrinsics import select
 from ...types import FloatArray, IntArray
 from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
@@ -23,9 +22,9 @@ from ..polygon import SAME_VERTEX
 from ..polygon import SMALLEST as SMALLEST_EXTENT
 from ..result import Found
 from .blocks import (
-    BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, FOUR, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST,
-    LIMIT, LOW, NATURAL, ONE, ORDER, PAD, PAIR, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, THREE, TOTAL, TWO,
-    UNCERTIFIED, UNIT, WIDTH, Coordinates, Given, Group, X, close_ranks, fill_halos, follow_ends, lanes_used, place,
+    BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT,
+    LOW, NATURAL, PAD, PAIR, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, TABLE, UNCERTIFIED, UNIT, WIDTH,
+    Coordinates, Given, Group, X, fill_halos, follow_ends, lanes_used, place,
 )  # fmt: skip
 from .certificate import GIVEN_UP, flagged
 from .certificate import SEARCHED as MARK
@@ -57,7 +56,7 @@ def run(
     count = memory.shape[0] // (BLOCK + 3 * size)
     group = Group(
         size, memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
-        np.empty((SLOTS, TOTAL + 1), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
+        np.empty((SLOTS, TABLE), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
     )  # fmt: skip
     first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
     at = Coordinates(memory[first:second], memory[second:third], memory[third : third + count * size])
@@ -78,7 +77,7 @@ def run(
             h[PAD - 1 - i] = h[PAD + spans - 1 - i] if closed else 0.0
         for i in range(PAD + 2):
             h[PAD + spans + i] = h[PAD + i] if closed else 0.0
-        row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[ORDER], row[FINISHED] = k, n, lane, interval, slots, 0
+        row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[FINISHED] = k, n, lane, interval, 0
         row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
         limit = max(given.tolerances[k], given.settled * u[n - 1] / (n - 1))
         own[UNIT], own[KNOT_UNIT], own[LIMIT] = unit, knot_unit, limit * unit
@@ -104,32 +103,27 @@ def _iterate(
     """
     place(given, found, group, at, slots)
     fill_intervals(given, found, group, slots)
-    table, numbers, every, left = group.table, group.numbers, slots, slots
+    table, numbers, left = group.table, group.numbers, slots
     while left > 0:
         at = Coordinates(at.N, at.Q, at.P)
         _one_pass(given, found, group, at, slots)
-        lanes = 0
         for q in range(slots):
             if table[q, FINISHED]:
                 continue
             row, error = table[q], np.sqrt(numbers[q, LARGEST])
-            history = grown(history, (row[PASSES] + 1) * every)
-            history[row[PASSES] * every + row[ORDER]] = error / numbers[q, UNIT]
+            history = grown(history, (row[PASSES] + 1) * slots)
+            history[row[PASSES] * slots + q] = error / numbers[q, UNIT]
             row[PASSES] += 1
             if np.inf > error and not error < numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
-                lanes += row[COUNT] + 2 * HALO
                 continue
-            row[FINISHED], table[row[ORDER], TOTAL] = 1, row[PASSES]
+            row[FINISHED] = 1
             _store(given, found, group, at.P, q)
             left -= 1
-        # Lanes are compacted where this share of them is in use: copying all fields takes a quarter of a pass.
-        if left < slots and lanes <= 0.75 * (table[slots - 1, LANE] + table[slots - 1, COUNT] + 2 * HALO):
-            slots = close_ranks(group, at.N, at.Q, slots)
-    for q in range(every):
-        count = table[q, TOTAL]
+    for q in range(slots):
+        count = table[q, PASSES]
         residuals = grown(residuals, used + count)
         for i in range(count):
-            residuals[used + i] = history[i * every + q]
+            residuals[used + i] = history[i * slots + q]
         used += count
     return history, residuals, used
 
@@ -173,25 +167,10 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
                 group.table[q, UNCERTIFIED] += mark == GIVEN_UP
             low = open_end if b == 0 else 0
             high = n - open_end if b + 1 == count else n
-            D = _largest(block, first + low, first + high) if high > low else 0.0
-            numbers[q, LARGEST] = max(numbers[q, LARGEST], D)
+            for j in range(np.uint64(first + low), np.uint64(first + max(high, low))):
+                numbers[q, LARGEST] = max(numbers[q, LARGEST], block[DD + j])
         if count > 1 and numbers[0, LARGEST] == np.inf:
             return
-
-
-@compiled
-def _largest(block: FloatArray, low: int, high: int) -> float:
-    """The largest squared distance in lanes low to high - 1, by four, as each comparison waits for the one before."""
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0
-    start, stop = DD + np.uint64(low), DD + np.uint64(high)
-    quads = start + (stop - start) // FOUR * FOUR
-    for j in range(start, quads, FOUR):
-        w, x, y, z = block[j], block[j + ONE], block[j + TWO], block[j + THREE]
-        a, b, c, d = select(w > a, w, a), select(x > b, x, b), select(y > c, y, c), select(z > d, z, d)
-    for j in range(quads, stop):
-        a = select(block[j] > a, block[j], a)
-    a, c = select(b > a, b, a), select(d > c, d, c)
-    return select(c > a, c, a)
 
 
 @compiled
