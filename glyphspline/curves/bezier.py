@@ -35,6 +35,12 @@ def split(pieces: FloatArray, x: float | FloatArray = 0.5) -> tuple[FloatArray, 
     return np.stack(left, axis=-2), np.stack(right[::-1], axis=-2)
 
 
+def sections(pieces: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
+    """The parts of pieces (m, degree + 1, k) between two parameters of each (m,); the second one is larger."""
+    right = split(pieces, first[:, None, None])[1]
+    return split(right, ((last - first) / (1 - first))[:, None, None])[0]
+
+
 def roots_inside(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
     """(..., 2) the roots of a t² + b t + c inside (0, 1), ascending; NaN for those that there are not, and double ones.
 

@@ -16,10 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiled import compiled
-from ..curves.bezier import evaluate
+from ..curves.bezier import evaluate, sections
 from ..curves.crossings import crossings
-from ..curves.cubics import bernstein, section
+from ..curves.cubics import bernstein
 from ..curves.integrals import area
 from ..outlines.contour_arrays import ContourArrays, cubic_contours, offsets_of
 from ..outlines.segments import all_cubics, contour_cubics
@@ -141,7 +140,9 @@ class _Strand:
     def __init__(self, cubics: FloatArray, reach: float) -> None:
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
         counts = np.clip(np.ceil(legs * PARTS / reach), 1, MOST_PARTS).astype(np.int64)
-        self.pieces = _cut(cubics, counts)
+        of = np.repeat(np.arange(len(cubics)), counts)
+        number = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
+        self.pieces = sections(cubics[of], number / counts[of], (number + 1) / counts[of])
         chords = np.hypot(*np.moveaxis(np.diff(self.pieces, axis=1), 2, 0))
         ends = np.concatenate([[0.0], np.cumsum(chords)])
         self.places, self.total = ends[:-1], ends[-1]  # of all control points but the last of each piece
@@ -188,14 +189,3 @@ class _Strand:
         steps *= shift / np.maximum(np.hypot(*steps.T), 1)[:, None]
         points = self.pieces[:, :3].reshape(-1, 2) + steps
         return np.stack([points[0::3], points[1::3], points[2::3], np.roll(points[0::3], -1, axis=0)], axis=1)
-
-
-@compiled
-def _cut(cubics: FloatArray, counts: IntArray) -> FloatArray:
-    """The cubics (m, 4, 2), each cut into equal parts, as many as its count."""
-    parts, at = np.empty((counts.sum(), 4, 2)), 0
-    for s in range(len(cubics)):
-        for k in range(counts[s]):
-            section(cubics[s], k / counts[s], (k + 1) / counts[s], parts[at])
-            at += 1
-    return parts

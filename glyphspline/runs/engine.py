@@ -66,7 +66,17 @@ class Job(ABC, Generic[Task, Result]):
 
     def read(self, tasks: Sequence[Task]) -> Sequence[Item | Exception]:
         """Read tasks, in a worker: an item for each, or why it cannot be read."""
-        return [Item(task) for task in tasks]
+        found: list[Item | Exception] = []
+        for task in tasks:
+            try:
+                found.append(self.item(task))
+            except Exception as error:  # broken data raises anything
+                found.append(error)
+        return found
+
+    def item(self, task: Task) -> Item | Exception:
+        """Read a task, if each is read by itself."""
+        return Item(task)
 
     @abstractmethod
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Result:

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..curves.bezier import cross, split
+from ..curves.bezier import cross, sections
 from ..curves.cubics import bernstein
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.outline import Contour, Outline
@@ -183,13 +183,7 @@ def _cut(cubics: FloatArray, places: FloatArray) -> tuple[FloatArray, IntArray]:
                 first.append(a)
                 last.append(b)
     of = np.array(parent)
-    return _sections(cubics[of], np.array(first), np.array(last)), of
-
-
-def _sections(cubics: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
-    """The parts of cubics (k, 4, 2) between two parameters of each (k,)."""
-    right = split(cubics, first[:, None, None])[1]
-    return split(right, ((last - first) / (1 - first))[:, None, None])[0]
+    return sections(cubics[of], np.array(first), np.array(last)), of
 
 
 def _fitted(line: _Line, cubics: FloatArray, tolerance: float) -> tuple[FloatArray, IntArray, float, float]:
@@ -203,7 +197,7 @@ def _fitted(line: _Line, cubics: FloatArray, tolerance: float) -> tuple[FloatArr
     while len(todo):
         of = np.repeat(todo, count[todo])
         number = np.arange(len(of)) - np.repeat(np.cumsum(count[todo]) - count[todo], count[todo])
-        parts = _sections(cubics[of], number / count[of], (number + 1) / count[of])
+        parts = sections(cubics[of], number / count[of], (number + 1) / count[of])
         found = [_fit(line, parts[k : k + AT_ONCE], tolerance) for k in range(0, len(of), AT_ONCE)]
         fit, error, stretched = (np.concatenate(column) for column in zip(*found, strict=True))
         stretch = max(stretch, float(stretched.max()))

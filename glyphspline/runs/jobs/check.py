@@ -77,7 +77,7 @@ class CheckJob(Job[Head, Checked]):
     chunk = 200
     """A few megabytes of outlines."""
 
-    def read(self, tasks: Sequence[Head]) -> list[Item | Exception]:
+    def read(self, tasks: Sequence[Head]) -> Sequence[Item | Exception]:
         """Outlines of one em together: each drawing has its own."""
         (read,) = readers(self.side)
         return [
@@ -121,17 +121,13 @@ class AxesJob(CheckJob):
 
     chunk = 8
 
-    def read(self, tasks: Sequence[Head]) -> list[Item | Exception]:
-        """Glyphs in all their masters."""
+    read = Job.read
+
+    def item(self, task: Head) -> Item | Exception:
+        """A glyph in all its masters."""
         (source,) = sources(self.side.place)
-        found: list[Item | Exception] = []
-        for name, _, _ in tasks:
-            try:
-                masters = source.masters(name)
-                found.append(_item(masters, sum(len(contour.degrees) for contour in masters.contours)))
-            except GlyphsplineError as error:
-                found.append(error)
-        return found
+        masters = source.masters(task[0])
+        return _item(masters, sum(map(len, masters.contours)))
 
     def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[AxisKinks]]:
         """As for a font where it is open, at the worst place of each finding."""

@@ -54,18 +54,11 @@ class MendJob(Job[Head, list[Mended]]):
     chunk = 8
     budget = 1.0
 
-    def read(self, tasks: Sequence[Head]) -> list[Item | Exception]:
-        """Glyphs in all their masters, with the contours that they do not draw themselves."""
+    def item(self, task: Head) -> Item | Exception:
+        """A glyph in all its masters, with the contours that it does not draw itself."""
         (source,) = sources(self.place)
-        found: list[Item | Exception] = []
-        for name, _, _ in tasks:
-            try:
-                masters = source.masters(name)
-                count = sum(len(contour) for contour in masters.contours)
-                found.append(Limits().error_of(count) or Item((masters, into_of(source, masters))))
-            except Exception as error:  # broken data raises anything
-                found.append(error)
-        return found
+        masters = source.masters(task[0])
+        return Limits().error_of(sum(map(len, masters.contours))) or Item((masters, into_of(source, masters)))
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ...files import replacing
 from ...types import FloatArray
 from ..settings import FigureKind
 from ..svg.comb import SIDES, Teeth, colour_classes, palette
@@ -55,16 +56,11 @@ def write_pages(path: FilePath, figures: Iterable[Any]) -> int:
     """
     from matplotlib.backends.backend_pdf import PdfPages
 
-    partial = path.with_name(f".{path.name}.part")
     count = 0
-    try:
-        with PdfPages(partial, metadata=UNDATED) as pages:
-            for figure in figures:
-                pages.savefig(figure)
-                count += 1
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as file, PdfPages(file, metadata=UNDATED) as pages:
+        for figure in figures:
+            pages.savefig(figure)
+            count += 1
     return count
 
 
