@@ -326,23 +326,24 @@ def _contour_result(
 
 def _closed(source: MasterContour, found: SmoothCurve, fits: _Fits) -> MastersContourResult:
     """The result of a contour as one closed curve, or as it is where none is within the tolerance."""
-    good = found.bound <= fits.tolerance
-    curve = found.curve if good else source
+    if found.bound > fits.tolerance:
+        return _unchanged(source, fits, len(source))
     return MastersContourResult(
-        source, curve, np.full(len(curve), good), found.iterations if good else None,
-        found.rate_bound if good else None, found.bound if good else 0.0, True, 0 if good else len(curve),
-        is_regular(curve, fits.mixes),
+        source, found.curve, np.ones(len(found.curve), dtype=bool), found.iterations, found.rate_bound, found.bound,
+        True, 0, is_regular(found.curve, fits.mixes),
     )  # fmt: skip
+
+
+def _unchanged(source: MasterContour, fits: _Fits, kept: int) -> MastersContourResult:
+    """A contour as it is; ``kept``: how many of its segments count as such that no curve was found for."""
+    joints = np.zeros(len(source), dtype=bool)
+    return MastersContourResult(source, source, joints, None, None, 0.0, True, kept, is_regular(source, fits.mixes))
 
 
 def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
     """The result of a contour as fonts store it; one that is too far on the grid stays the source's, off it."""
     if found.bound > fits.tolerance:
-        curved, joints = int((source.degrees > 1).sum()), np.zeros(len(source), dtype=bool)
-        return MastersContourResult(
-            source, source, joints, iterations=None, rate_bound=None, deviation_bound=0.0, within_tolerance=True,
-            kept=curved, regular=is_regular(source, fits.mixes),
-        )  # fmt: skip
+        return _unchanged(source, fits, int((source.degrees > 1).sum()))
     precision, degrees = fits.options.precision, found.curves[0].degrees
     curve = MasterContour(np.stack([each.rounded(precision).points for each in found.curves]), degrees)
     cubics, given = curve.cubics(), source.cubics()

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..curves.bezier import evaluate, sections
+from ..curves.bezier import divided, evaluate
 from ..curves.crossings import crossings
 from ..curves.cubics import bernstein
 from ..curves.integrals import area
@@ -140,9 +140,7 @@ class _Strand:
     def __init__(self, cubics: FloatArray, reach: float) -> None:
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
         counts = np.clip(np.ceil(legs * PARTS / reach), 1, MOST_PARTS).astype(np.int64)
-        of = np.repeat(np.arange(len(cubics)), counts)
-        number = np.arange(len(of)) - np.repeat(np.cumsum(counts) - counts, counts)
-        self.pieces = sections(cubics[of], number / counts[of], (number + 1) / counts[of])
+        self.pieces, _ = divided(cubics, counts)
         chords = np.hypot(*np.moveaxis(np.diff(self.pieces, axis=1), 2, 0))
         ends = np.concatenate([[0.0], np.cumsum(chords)])
         self.places, self.total = ends[:-1], ends[-1]  # of all control points but the last of each piece

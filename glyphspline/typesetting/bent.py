@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..curves.bezier import cross, sections
+from ..curves.bezier import cross, divided, sections
 from ..curves.cubics import bernstein
 from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.outline import Contour, Outline
@@ -195,9 +195,8 @@ def _fitted(line: _Line, cubics: FloatArray, tolerance: float) -> tuple[FloatArr
     count, todo = np.ones(len(cubics), dtype=np.int64), np.arange(len(cubics))
     pieces, parents, worst, stretch = [], [], 0.0, 1.0
     while len(todo):
-        of = np.repeat(todo, count[todo])
-        number = np.arange(len(of)) - np.repeat(np.cumsum(count[todo]) - count[todo], count[todo])
-        parts = sections(cubics[of], number / count[of], (number + 1) / count[of])
+        parts, of = divided(cubics[todo], count[todo])
+        of = todo[of]
         found = [_fit(line, parts[k : k + AT_ONCE], tolerance) for k in range(0, len(of), AT_ONCE)]
         fit, error, stretched = (np.concatenate(column) for column in zip(*found, strict=True))
         stretch = max(stretch, float(stretched.max()))
