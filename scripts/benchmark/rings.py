@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from time import process_time
 
 import numpy as np
 
 import glyphspline as gs
 
+from .batch import least, seconds
 from .faithful import FACES, Face, of_faces
 from .measure import Row
 
@@ -29,15 +31,10 @@ def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
     """
     held, passed = (gs.Options(tolerance=1.0, corners="smooth", hold_corners=hold) for hold in (True, False))
     beyond, vertices, peaks, crossing, missed, kept = [], [], [], [], 0, 0
-    converted: dict[gs.Options, list[gs.GlyphResult]] = {}
-    seconds: dict[gs.Options, list[float]] = {held: [], passed: []}
     gs.convert_many(glyphs[:5], held)
-    for _ in range(3):  # in turn; the least processor time counts
-        for options in seconds:
-            start = process_time()
-            converted[options] = gs.convert_many(glyphs, options)
-            seconds[options].append(process_time() - start)
-    for options, results in converted.items():
+    times = least(3, *(seconds(partial(gs.convert_many, glyphs, options), process_time) for options in (held, passed)))
+    for options in (held, passed):
+        results = gs.convert_many(glyphs, options)
         measures = [contour.measures for result in results for contour in result.contours]
         smooth = [m for m in measures if not (m.corners_kept or m.source_kept)]
         beyond.append([(m.curvature_extrema or 0) - (m.curvature_extrema_floor or 0) for m in smooth])
@@ -59,5 +56,5 @@ def face_rows(face: Face, glyphs: list[gs.Outline]) -> list[Row]:
         Row(f"{face.name}: contours not certified", missed, "", 0.5, 0.5, False),
         Row(f"{face.name}: glyphs that cross anew", crossing[0], "", 10.0, 0.5, False, sharp),
         Row(f"{face.name}: largest curvature, held / passed", peaks[0] / peaks[1], "x", 1.6, 1.4, False, "medians"),
-        Row(f"{face.name}: time, held / passed", min(seconds[held]) / min(seconds[passed]), "x", 1.5, 1.0, False),
+        Row(f"{face.name}: time, held / passed", times[0] / times[1], "x", 1.5, 1.0, False),
     ]

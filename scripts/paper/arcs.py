@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
@@ -57,15 +59,8 @@ def _arc(points: FloatArray, variant: int, **options: float) -> gs.Interpolation
     turn = np.array([[np.cos(0.5), -np.sin(0.5)], [np.sin(0.5), np.cos(0.5)]])
     first, last = points[1] - points[0], points[-1] - points[-2]
     tangents = (turn @ first / np.hypot(*first), turn @ last / np.hypot(*last))
-    return gs.interpolate(
-        points,
-        variant,
-        closed=False,
-        end_tangents=tangents,
-        residual_tolerance=TOLERANCE,
-        max_iterations=MAX_ITERATIONS,
-        **options,  # type: ignore[arg-type]
-    )
+    how: dict[str, Any] = {"residual_tolerance": TOLERANCE, "max_iterations": MAX_ITERATIONS, **options}
+    return gs.interpolate(points, variant, closed=False, end_tangents=tangents, **how)
 
 
 def _certificate(run: Run) -> dict[str, float]:
