@@ -13,6 +13,7 @@ from ..errors import GlyphsplineError
 from ..interpolation.api import interpolate_batch
 from ..interpolation.batch import NONE_HELD
 from ..interpolation.driver import interpolate_any_degree
+from ..interpolation.kernels.driver import distance
 from ..interpolation.method import Fallback, Method, method_of
 from ..interpolation.polygon import explain
 from ..interpolation.result import BatchedInterpolation, Interpolation
@@ -93,15 +94,6 @@ def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: fl
                         pieces[a + i, v, j, axis] = own[i, j, axis]
                         written[a + i, v, j, axis] = np.rint(own[i, j, axis] * unit) / unit
     return pieces, written
-
-
-@compiled
-def distance(points: FloatArray, i: int, j: int) -> float:
-    """The distance of vertices i and j, (n, d)."""
-    square = 0.0
-    for axis in range(points.shape[1]):
-        square += (points[j, axis] - points[i, axis]) ** 2
-    return np.sqrt(square)
 
 
 @compiled

@@ -15,8 +15,8 @@ from ...compiled import compiled
 from ...curves.cubics import extent
 from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
+from ...interpolation.kernels.driver import distance
 from ...types import BoolArray, FloatArray, IntArray
-from ..closed_curves import distance
 from .canonical_contours import TABLE, CanonicalContours, chain_of, points_at, table_of
 from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, off_corners, spans_after, with_more
 
