@@ -27,6 +27,7 @@ class Fits(NamedTuple):
     Attributes:
         tries: how many fits there are; later ones are closer to the source.
         fit: from contours, and the number of a fit, to their results, before their geometry is measured.
+        closer: the number of the first fit that is closer.
         apart: the number of the fit of contours that are drawn apart, after which that is tried; 0 if it is not.
             Contours that touch in the source are drawn apart at once: closer fits do not help.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
@@ -36,6 +37,7 @@ class Fits(NamedTuple):
 
     tries: int
     fit: Callable[[ContourArrays, int], ConvertedContours]
+    closer: int = 1
     apart: int = 0
     keeps_collapsed: bool = True
     keeps_crossing: bool = False
@@ -152,7 +154,7 @@ def faithful(
     if search.found.number:
         touching = _touching(contours, search) if fits.apart else np.zeros(len(search.tried), dtype=np.bool_)
         for turn in range(1, fits.tries):
-            search.attempt(search.found.any & ~touching, partial(closer, turn))
+            search.attempt(search.found.any & ~(touching & (turn >= fits.closer)), partial(closer, turn))
             near = list(search.tried)
             for share in APART if turn == fits.apart else ():
                 search.attempt(search.found.crosses, partial(apart, near, share))

@@ -125,24 +125,27 @@ def geometry(
         )
         length_before, _, _ = _bends(given, source.degrees[source.offsets[c] : source.offsets[c + 1]])
         extrema[c] = curvature_extrema(contour_cubics(curves, c), length[c], CORNER)
-        extrema_before[c], floor[c] = extrema_floor(given, length_before)
+        extrema_before[c], floor[c], _, _ = extrema_floor(given, length_before)
         change[c] = area(cubics) - area(given)
         beyond[c] = overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])
     return Geometry(beyond, length, change, energy, curvature, extrema, extrema_before, floor)
 
 
 @compiled
-def extrema_floor(given: FloatArray, length: float) -> tuple[int, int]:
+def extrema_floor(given: FloatArray, length: float) -> tuple[int, int, FloatArray, FloatArray]:
     """Extrema of curvature of a contour (m, 4, 2) of a length; and with its corners rounded, as tightly as can be.
 
     Each corner is then a peak above all others. Curvature goes from peak to peak through that of the sides.
+
+    Returns:
+        The two numbers; and curvatures and places of :func:`.fairness.curvatures`, infinite at corners.
     """
     values, where, n = curvatures(given, length, CORNER)
     extrema, bends = extrema_of(values, n, TURN / length), turns(given, 0.0)
     for i in range(n):
         if np.isnan(values[i]):
             values[i] = np.copysign(np.inf, bends[int(where[i])])
-    return extrema, extrema_of(values, n, TURN / length)
+    return extrema, extrema_of(values, n, TURN / length), values[:n], where[:n]
 
 
 @compiled

@@ -8,20 +8,27 @@ squares; a logarithmic barrier keeps samples of the curve near the outline. Each
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import jet
-from ...curves.fairness import TURN, curvatures, extrema_of
+from ...curves.cubics import jet, nearest
+from ...curves.fairness import SHARE, TURN, curvatures, extrema_of, swings
 from ...curves.nearest import near_place
 from ...types import BoolArray, FloatArray, IntArray
 from ..measures import CORNER, extrema_floor
 from .canonical_contours import CanonicalContours, in_master
+from .spacing import spans_after
+from .steps import Trial
 
 SAMPLES = 3
-"""Samples of curvature and distance in a span."""
+"""Samples of curvature in a span, from its first end."""
 
-STEPS = 6
+POINTS, MORE, LONG = 2, 4, 2.0
+"""Samples of distance in a span, from its first end; and in one longer than this times one beside it."""
+
+STEPS = 5
 """Newton steps."""
 
 SMALL = 0.3
@@ -53,218 +60,296 @@ BAND = 9
 """Diagonals of the equations, in the order of :func:`_order`."""
 
 
-@compiled
-def floors(contours: CanonicalContours, which: IntArray) -> tuple[IntArray, FloatArray]:
-    """(k, K) the fewest extrema of curvature of C2 curves near contours in each master, see
-    :class:`..results.Measures`; and their lengths."""
-    K = len(contours.cubics) // len(contours.turns)
-    found, lengths = np.empty((len(which), K), dtype=np.int64), np.empty((len(which), K))
-    for i in range(len(which)):
-        for v in range(K):
-            outline, lengths[i, v] = in_master(contours, which[i], v)
-            _, found[i, v] = extrema_floor(outline, lengths[i, v])
-    return found, lengths
+class Splines(NamedTuple):
+    """The curves of a :class:`.steps.Trial`, ragged, before they are rounded.
+
+    Attributes:
+        controls: (n, 2 K). knots, parameters: of the splines, and of footpoints. held: (n,) the vertices whose control
+            points are held.
+    """
+
+    controls: FloatArray
+    knots: FloatArray
+    parameters: FloatArray
+    held: BoolArray
 
 
 @compiled
-def bends(lengths: FloatArray, offsets: IntArray, pieces: FloatArray) -> tuple[IntArray, FloatArray]:
-    """(k, K) extrema of curvature of ragged curves, and (n, K) the largest curvature of each span.
+def bends(
+    contours: CanonicalContours, trial: Trial, pieces: FloatArray, keep: BoolArray, mark: bool
+) -> tuple[IntArray, FloatArray, BoolArray]:
+    """How often the curves of a trial bend, and where more often than they have to.
 
     Args:
-        lengths: (k, K) of the contours. pieces: (n, K, 4, 2).
+        pieces: (n, K, 4, 2). keep: (k,) the contours that count. mark: whether to look for the spans.
+
+    Returns:
+        (k, K) extrema of curvature; (n, K) the largest curvature of each span; and (n, K) the spans to be faired: those
+        that bend, between corners where they need not so often, of contours with more extrema than needed (see
+        :class:`..results.Measures`).
     """
-    extrema, peaks = np.empty(lengths.shape, dtype=np.int64), np.zeros(pieces.shape[:2])
-    for i in range(len(lengths)):
-        for v in range(lengths.shape[1]):
-            curve = pieces[offsets[i] : offsets[i + 1], v].copy()
-            values, where, n = curvatures(curve, lengths[i, v], CORNER)
-            extrema[i, v] = extrema_of(values, n, TURN / lengths[i, v])
+    offsets, K = trial.offsets, pieces.shape[1]
+    extrema = np.zeros((len(keep), K), dtype=np.int64)
+    peaks, uneven = np.zeros((len(pieces), K)), np.zeros((len(pieces), K), dtype=np.bool_)
+    for i in np.flatnonzero(keep):
+        a, b = offsets[i], offsets[i + 1]
+        for v in range(K):
+            outline, length = in_master(contours, trial.which[i], v)
+            values, where, n = curvatures(pieces[a:b, v].copy(), length, CORNER)
+            extrema[i, v] = extrema_of(values, n, TURN / length)
             for j in range(n):
-                span = offsets[i] + min(int(where[j]), len(curve) - 1)
+                span = a + min(int(where[j]), b - a - 1)
                 peaks[span, v] = max(peaks[span, v], abs(values[j]))
-    return extrema, peaks
+            if mark:
+                _, fewest, given, corners = extrema_floor(outline, length)
+                if extrema[i, v] > fewest:
+                    _mark(given, corners, values[:n], where[:n], trial.places[a:b], TURN / length, uneven[a:b, v])
+                for j in range(a, b):
+                    uneven[j, v] = uneven[j, v] and peaks[j, v] > STRAIGHT / length
+    return extrema, peaks, uneven
+
+
+@compiled
+def _mark(
+    given: FloatArray, corners: FloatArray, values: FloatArray, where: FloatArray, places: FloatArray, least: float,
+    uneven: BoolArray,
+) -> None:  # fmt: skip
+    """Mark the spans between two corners where the curve bends more often than it has to; all if there are none.
+
+    Args:
+        given: curvatures of the outline, infinite at corners; corners: the places of all. values, where: the same of
+            the curve. places: (n,) of its vertices. least: see :func:`..curves.fairness.extrema_of`.
+    """
+    n, at = len(values), np.flatnonzero(np.isinf(given))
+    count = len(at)
+    vertices, tops = np.empty(count, dtype=np.int64), np.empty(count, dtype=np.int64)
+    found = np.empty(n + 2, dtype=np.int64)
+    for k in range(count):
+        j = np.searchsorted(places, corners[at[k]]) % len(places)
+        first = np.searchsorted(where, j - 0.5) if j > 0 else np.searchsorted(where, len(places) - 0.5) - n
+        vertices[k], tops[k] = j, first
+        for i in range(first, np.searchsorted(where, j + 0.5, side="right")):
+            if values[i % n] * given[at[k]] > values[tops[k] % n] * given[at[k]]:
+                tops[k] = i
+    for k in range(count):
+        after, lap = (k + 1) % count, k + 1 == count
+        need = 2 if given[at[k]] == given[at[after]] else 1
+        if swings(values, n, tops[k], tops[after] + lap * n + 1, 1.0, SHARE, least, found) > need:
+            for j in range(-1, spans_after(vertices, k, len(places)) + 1):
+                uneven[(vertices[k] + j) % len(places)] = True
+    if not uneven.any():
+        uneven[:] = True
 
 
 @compiled
 def lowered(
     limits: FloatArray, offsets: IntArray, bounds: FloatArray, near: float, peaks: FloatArray, most: FloatArray
-) -> FloatArray:
-    """Ragged limits (n, K), lower in the spans whose bounds are too large, and in those beside them.
+) -> BoolArray:
+    """Lower ragged limits (n, K) in the spans whose bounds are too large, and in those beside them.
 
     They are 0, and nothing moves, where a span misses again, or its peak is above that allowed for its contour.
 
     Args:
-        bounds: (n,). peaks: (n, K). most: (k, K) those allowed.
+        limits: they change. bounds: (n,). peaks: (n, K). most: (k, K) those allowed.
+
+    Returns:
+        (n, K) the spans to be faired again: those from which and up to which nothing moves, around one that is lower.
     """
-    after = limits.copy()
+    before, again = limits.copy(), np.zeros(limits.shape, dtype=np.bool_)
     for i in range(len(offsets) - 1):
         a, n = offsets[i], offsets[i + 1] - offsets[i]
-        for j in range(n):
-            for c in range(-1, 2):
-                at = a + (j + c) % n
-                for v in range(limits.shape[1]):
-                    if peaks[a + j, v] > most[i, v] or (bounds[a + j] > near and limits[at, v] < LIMIT * near):
-                        after[at, v] = 0.0
+        for v in range(limits.shape[1]):
+            for j in range(n):
+                for c in range(-1, 2):
+                    at, share = a + (j + c) % n, 1.0
+                    if peaks[a + j, v] > most[i, v] or (bounds[a + j] > near and before[at, v] < LIMIT * near):
+                        share = 0.0
                     elif bounds[a + j] > near:
-                        after[at, v] = min(after[at, v], CUT * near / bounds[a + j] * limits[at, v])
-    return after
+                        share = CUT * near / bounds[a + j]
+                    limits[at, v] = min(limits[at, v], share * before[at, v])
+            for j in range(n):
+                again[a + j, v] = limits[a + j, v] < before[a + j, v]
+            for j in range(2 * n if again[a : a + n, v].any() else 0):  # round in both directions
+                for at, beside in ((j % n, (j - 1) % n), (-j % n, (1 - j) % n)):
+                    again[a + at, v] |= before[a + at, v] > 0 and again[a + beside, v]
+    return again
 
 
 @compiled
-def faired(
-    contours: CanonicalContours, which: IntArray, offsets: IntArray, places: FloatArray, points: FloatArray,
-    ends: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
-    limits: FloatArray, near: float, some: BoolArray,
-) -> FloatArray:  # fmt: skip
-    """New vertices (n, 2 K) of the contours that are among ``some``; those of held control points stay.
+def fair(
+    contours: CanonicalContours, trial: Trial, splines: Splines, limits: FloatArray, again: BoolArray, near: float,
+    moved: FloatArray,
+) -> None:  # fmt: skip
+    """Write the new vertices of curves; those of held control points stay.
 
     Args:
-        which: (k,) contours, with ragged vertices: places on the outline, points, ends of spans on it (see
-            :class:`.steps.Trial`), Bézier pieces, knots, footpoints' parameters, and whether they are held.
         limits: (n, K) largest distance of samples of each span from the outline; 0 where nothing moves.
-        near: the distance allowed, in font units.
+        again: (n, K) the spans to be faired. near: the distance allowed, in font units.
+        moved: (n, 2 K), which change beside these spans.
     """
-    moved = points.copy()
+    which, offsets, points = trial.which, trial.offsets, trial.points
     for i in range(len(which)):
         a, b = offsets[i], offsets[i + 1]
-        for v in range(pieces.shape[1] if some[i] else 0):
-            own = points[a:b, 2 * v : 2 * v + 2].copy()
+        for v in range(limits.shape[1]):
+            own, least = moved[a:b, 2 * v : 2 * v + 2].copy(), limits[a:b, v].copy()
+            for j in range(b - a):
+                if again[a + j, v] or again[a + (j - 1) % (b - a), v]:
+                    own[j, 0], own[j, 1] = points[a + j, 2 * v], points[a + j, 2 * v + 1]
+                if not again[a + j, v]:
+                    least[j] = 0.0
+            if not again[a:b, v].any():
+                continue
             outline, _ = in_master(contours, which[i], v)
+            P = splines.controls[a:b, 2 * v : 2 * v + 2]
             _fair(
-                outline, pieces[a:b, v].copy(), knots[a + i : b + i + 1], parameters[a:b], held[a:b],
-                ends[a + i : b + i + 1], limits[a:b, v].copy(), near, np.sqrt(pieces.shape[1]), own,
+                outline, np.concatenate((P[-1:], P, P[:2])), splines.knots[a + i : b + i + 1], splines.parameters[a:b],
+                splines.held[a:b], trial.ends[a + i : b + i + 1], least, near, np.sqrt(limits.shape[1]), own,
             )  # fmt: skip
             if np.isfinite(own).all():  # or else the curve has no speed somewhere, as where a contour collapses
                 moved[a:b, 2 * v : 2 * v + 2] = own
-    return moved
 
 
 @compiled
 def _fair(
-    outline: FloatArray, pieces: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
+    outline: FloatArray, controls: FloatArray, knots: FloatArray, parameters: FloatArray, held: BoolArray,
     ends: FloatArray, limits: FloatArray, near: float, unit: float, points: FloatArray,
 ) -> None:  # fmt: skip
-    """Write the new vertices of one contour in one master; ``unit``: of the knots, about, in font units."""
-    n = len(pieces)
-    m, length, basis = n * SAMPLES, knots[n] - knots[0], _span_basis(knots)
-    spans, local, normals = np.empty(n, dtype=np.int64), np.empty(n), np.zeros((n + 3, 2))
+    """Write the new vertices of one contour in one master.
+
+    Args:
+        controls: (n + 3, 2) control points, from the last to the second after it; they change, and row j + c is number
+            c of span j. unit: of the knots, about, in font units.
+    """
+    n = len(held)
+    length, basis, normals = knots[n] - knots[0], np.empty((n, 4, 4)), np.zeros((n + 3, 2))
+    spans, local, reached = np.empty(n, dtype=np.int64), np.empty(n), np.zeros(n, dtype=np.bool_)
+    for j in range(n):
+        reached[j] = max(max(limits[j], limits[j - 1]), max(limits[j - 2], limits[(j + 1) % n])) > 0
+        if reached[j]:
+            _span_basis(knots, j, basis[j])
     for i in range(n):
-        t = parameters[i] - np.floor((parameters[i] - knots[0]) / length) * length
-        j = min(max(np.searchsorted(knots, t, side="right") - 1, 0), n - 1)
-        spans[i], local[i] = j, (t - knots[j]) / (knots[j + 1] - knots[j])
-        if not held[i] and min(limits[i - 1], limits[i]) > 0:
-            _, _, dx, dy, _, _ = jet(pieces, j, local[i])
-            speed = np.sqrt(dx * dx + dy * dy)
-            normals[i + 1, 0], normals[i + 1, 1] = -dy / speed, dx / speed
-    normals[0], normals[n + 1], normals[n + 2] = normals[n], normals[1], normals[2]  # row c of span j is j + c
+        if reached[i]:
+            t = parameters[i] - np.floor((parameters[i] - knots[0]) / length) * length
+            j = min(max(np.searchsorted(knots, t, side="right") - 1, 0), n - 1)
+            spans[i], local[i] = j, (t - knots[j]) / (knots[j + 1] - knots[j])
+            if not held[i] and limits[i] > 0 and limits[i - 1] > 0:
+                _, _, dx, dy = _jet(basis[j], controls, j, local[i])
+                speed = np.sqrt(dx * dx + dy * dy)
+                normals[i + 1, 0], normals[i + 1, 1] = -dy / speed, dx / speed
+    normals[0], normals[n + 1], normals[n + 2] = normals[n], normals[1], normals[2]
     order, unknowns = _order(normals)
-    # Spans that move, and those whose first sample is compared with the last one of a span that does.
-    moving = np.empty(n, dtype=np.bool_)
+    # Samples in each span: of those that move, and the first one of that behind, which is compared with their last.
+    # Runs of spans that move are independent of each other.
+    moving, samples, runs = np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.int64), np.zeros(n, dtype=np.int64)
     for j in range(n):
         moving[j] = np.abs(normals[j : j + 4]).max() > 0
-    # Each sample's derivatives, those of these by the four control points, and the same of its distance.
-    jets, first, second = np.empty((m, 4)), np.empty((m, 4, 2)), np.empty((m, 4, 2))
-    away, most, slopes, point = np.empty(m), np.empty(m), np.empty((m, 4)), np.empty((1, 1, 2))
+        runs[j] = runs[j - 1] + (not moving[j]) if j > 0 else 0
     for j in range(n):
-        for k in range(SAMPLES if moving[j] else 1):
-            s, x = j * SAMPLES + k, k / SAMPLES
-            px, py, dx, dy, bx, by = jet(pieces, j, x)
-            jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3] = dx, dy, bx, by
-            ex = ey = 0.0
-            if moving[j]:
-                point[0, 0, 0], point[0, 0, 1] = px, py
-                away[s], ex, ey = _distance(outline, point, j, x, ends, near, dx, dy)
-                most[s] = max(limits[j], 1.02 * abs(away[s]) + 1e-9 * near)
+        samples[j] = SAMPLES if moving[j] else int(moving[j - 1])
+        if runs[j] == runs[n - 1] and moving[n - 1]:  # the last run goes on from the first span
+            runs[j] = 0
+    # Each sample's first and second derivative by the four control points.
+    first, second = np.empty((n * SAMPLES, 4)), np.empty((n * SAMPLES, 4))
+    for j in range(n):
+        for k in range(samples[j]):
             for c in range(4):
-                value, slope, bend = _cubic(basis, j, c, x)
-                nx, ny = normals[j + c, 0], normals[j + c, 1]
-                first[s, c, 0], first[s, c, 1] = slope * nx, slope * ny
-                second[s, c, 0], second[s, c, 1] = bend * nx, bend * ny
-                slopes[s, c] = value * (nx * ex + ny * ey)
-    moves, delta, steps, weight = np.zeros(n + 3), np.zeros(n + 3), np.zeros(m), BARRIER
+                _, first[j * SAMPLES + k, c], second[j * SAMPLES + k, c] = _cubic(basis[j], c, k / SAMPLES)
+    # Points in spans that move: signed distance from the outline, that allowed, derivatives by the four control points,
+    # and what a step adds.
+    rows, of, count, point = np.empty((n * MORE, 7)), np.empty(n * MORE, dtype=np.int64), 0, np.empty((1, 1, 2))
+    for j in range(n):
+        before, after = (j - 1) % n, (j + 1) % n
+        beside = min(knots[before + 1] - knots[before], knots[after + 1] - knots[after])
+        parts = MORE if knots[j + 1] - knots[j] > LONG * beside else POINTS
+        for k in range(parts if moving[j] else 0):
+            x, row = k / parts, rows[count]
+            px, py, dx, dy = _jet(basis[j], controls, j, x)
+            place = (1 - x) * ends[j] + x * ends[j + 1]
+            s = int(np.floor(place))
+            if x > 0:
+                z = nearest(outline[s % len(outline)], 0.0, 1.0, place - s, px, py)
+                place = s + z
+                if z in (0.0, 1.0):  # it may lie in another segment
+                    point[0, 0, 0], point[0, 0, 1] = px, py
+                    place = near_place(1, outline, place, ends[j], ends[j + 1], point, 0)
+                    s = int(np.floor(place))
+            qx, qy, _, _, _, _ = jet(outline, s % len(outline), place - s)
+            px, py, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)
+            nx, ny, d = -dy / speed, dx / speed, np.sqrt(px * px + py * py)
+            if place == s and d > 0.02 * near:  # a corner may be the nearest
+                sign = 1.0 if px * nx + py * ny >= 0 else -1.0
+                nx, ny = sign * px / d, sign * py / d
+            row[0], of[count], count = px * nx + py * ny, j, count + 1
+            row[1] = max(limits[j], 1.02 * abs(row[0]) + 1e-9 * near)
+            for c in range(4):
+                value, _, _ = _cubic(basis[j], c, x)
+                row[2 + c] = value * (normals[j + c, 0] * nx + normals[j + c, 1] * ny)
+    rows, of = rows[:count], of[:count]
+    delta, shares, weight = np.zeros(n + 3), np.empty(n + 1), BARRIER
     for _ in range(STEPS):
         band, right = _equations(
-            jets, first, second, away, most, slopes, moving, order, unknowns, FLAT * unit / length, near, weight
+            controls, normals, first, second, samples, rows, of, order, unknowns, FLAT * unit / length, near, weight
         )
         _solve(band, right)
         for c in range(n + 3):
             delta[c] = right[order[c]] if order[c] >= 0 else 0.0
-        share = 1.0
-        for s in range(m):
-            j = s // SAMPLES
-            if not moving[j]:
-                continue
-            steps[s] = 0.0
-            for c in range(4):
-                steps[s] += slopes[s, c] * delta[j + c]
-            room = most[s] - away[s] if steps[s] > 0 else most[s] + away[s]
-            if abs(steps[s]) * share > 0.9 * room:
-                share = 0.9 * room / abs(steps[s])
+        shares[:] = 1.0
+        for i in range(count):
+            row, j = rows[i], of[i]
+            row[6] = row[2] * delta[j] + row[3] * delta[j + 1] + row[4] * delta[j + 2] + row[5] * delta[j + 3]
+            room = row[1] - row[0] if row[6] > 0 else row[1] + row[0]
+            if abs(row[6]) * shares[runs[j]] > 0.9 * room:
+                shares[runs[j]] = 0.9 * room / abs(row[6])
+        for i in range(count):
+            rows[i, 0] += shares[runs[of[i]]] * rows[i, 6]
         for c in range(n + 3):
-            delta[c] *= share
-            moves[c] += delta[c]
-        for s in range(m):
-            j = s // SAMPLES
-            for c in range(4 if moving[j] or s % SAMPLES == 0 else 0):
-                d = delta[j + c]
-                jets[s, 0] += d * first[s, c, 0]
-                jets[s, 1] += d * first[s, c, 1]
-                jets[s, 2] += d * second[s, c, 0]
-                jets[s, 3] += d * second[s, c, 1]
-            away[s] += share * steps[s]
+            step = shares[runs[(c - 1) % n]] * delta[c]
+            controls[c, 0] += step * normals[c, 0]
+            controls[c, 1] += step * normals[c, 1]
         weight *= WEAKER
     for i in range(n):
-        if not held[i]:
-            j = spans[i]
-            points[i, 0], points[i, 1], _, _, _, _ = jet(pieces, j, local[i])
-            for c in range(4):
-                value, _, _ = _cubic(basis, j, c, local[i])
-                points[i, 0] += value * moves[j + c] * normals[j + c, 0]
-                points[i, 1] += value * moves[j + c] * normals[j + c, 1]
+        if not held[i] and np.abs(normals[i : i + 3]).max() > 0:
+            points[i, 0], points[i, 1], _, _ = _jet(basis[spans[i]], controls, spans[i], local[i])
 
 
 @compiled
-def _distance(
-    outline: FloatArray, point: FloatArray, j: int, x: float, ends: FloatArray, near: float, dx: float, dy: float
-) -> tuple[float, float, float]:
-    """Signed distance from the outline of a point (1, 1, 2) on span j, at x, and the direction in which it grows."""
-    place = ends[j]
-    if x > 0:
-        place = near_place(1, outline, (1 - x) * ends[j] + x * ends[j + 1], ends[j], ends[j + 1], point, 0)
-    s = int(np.floor(place))
-    qx, qy, _, _, _, _ = jet(outline, s % len(outline), place - s)
-    ex, ey, speed = point[0, 0, 0] - qx, point[0, 0, 1] - qy, np.sqrt(dx * dx + dy * dy)
-    nx, ny, d = -dy / speed, dx / speed, np.sqrt(ex * ex + ey * ey)
-    if place == s and d > 0.02 * near:  # a corner may be the nearest
-        sign = 1.0 if ex * nx + ey * ny >= 0 else -1.0
-        nx, ny = sign * ex / d, sign * ey / d
-    return ex * nx + ey * ny, nx, ny
+def _jet(basis: FloatArray, controls: FloatArray, j: int, x: float) -> tuple[float, float, float, float]:
+    """Position on span j and first derivative."""
+    px = py = dx = dy = 0.0
+    for c in range(4):
+        value, slope, _ = _cubic(basis, c, x)
+        px, py = px + value * controls[j + c, 0], py + value * controls[j + c, 1]
+        dx, dy = dx + slope * controls[j + c, 0], dy + slope * controls[j + c, 1]
+    return px, py, dx, dy
 
 
 @compiled
 def _equations(
-    jets: FloatArray, first: FloatArray, second: FloatArray, away: FloatArray, most: FloatArray, slopes: FloatArray,
-    moving: BoolArray, order: IntArray, unknowns: int, flat: float, near: float, weight: float,
+    controls: FloatArray, normals: FloatArray, first: FloatArray, second: FloatArray, samples: IntArray,
+    rows: FloatArray, of: IntArray, order: IntArray, unknowns: int, flat: float, near: float, weight: float,
 ) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """The matrix of a Newton step, its upper band for :func:`_solve`, and the right side."""
-    m = len(jets)
-    n = m // SAMPLES
+    m, n = len(first), len(samples)
     kappa, by = np.empty(m), np.empty((m, 4))
-    for s in range(m):
-        if not moving[s // SAMPLES] and s % SAMPLES > 0:
-            continue
-        dx, dy, ax, ay = jets[s, 0], jets[s, 1], jets[s, 2], jets[s, 3]
-        inverse = 1.0 / (dx * dx + dy * dy)
-        cube = inverse * np.sqrt(inverse)
-        kappa[s] = (dx * ay - dy * ax) * cube
-        whole = 3 * kappa[s] * inverse
-        p, q = ay * cube - whole * dx, -ax * cube - whole * dy
-        for c in range(4):
-            by[s, c] = p * first[s, c, 0] + q * first[s, c, 1] + (dx * second[s, c, 1] - dy * second[s, c, 0]) * cube
+    for j in range(n):
+        for s in range(j * SAMPLES, j * SAMPLES + samples[j]):
+            dx = dy = ax = ay = 0.0
+            for c in range(4):
+                x, y = controls[j + c, 0], controls[j + c, 1]
+                dx, dy = dx + first[s, c] * x, dy + first[s, c] * y
+                ax, ay = ax + second[s, c] * x, ay + second[s, c] * y
+            inverse = 1.0 / (dx * dx + dy * dy)
+            cube = inverse * np.sqrt(inverse)
+            kappa[s] = (dx * ay - dy * ax) * cube
+            whole = 3 * kappa[s] * inverse
+            p, q, dx, dy = ay * cube - whole * dx, -ax * cube - whole * dy, dx * cube, dy * cube
+            for c in range(4):
+                x, y = normals[j + c, 0], normals[j + c, 1]
+                by[s, c] = first[s, c] * (p * x + q * y) + second[s, c] * (dx * y - dy * x)
     cyclic, right = np.zeros((n + 4, 5)), np.zeros(n + 4)  # row i of control point i - 1, and entries to the right
     row = np.empty(5)
     for j in range(n):
-        for k in range(SAMPLES if moving[j] else 0):
+        for k in range(SAMPLES if samples[j] == SAMPLES else 0):
             s = j * SAMPLES + k
             after = s + 1 if s + 1 < m else 0
             scale = 1.0 / max(max(abs(kappa[s]), abs(kappa[after])), flat)
@@ -279,14 +364,15 @@ def _equations(
                 right[j + a] -= w * change * row[a]
                 for b in range(a, 5):
                     cyclic[j + a, b - a] += w * row[a] * row[b]
-            unit = 1.0 / most[s]
-            z = away[s] * unit
-            inside = 1 / (1 - z * z)
-            slope, bend = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
-            for a in range(4):
-                right[j + a] -= slope * slopes[s, a]
-                for b in range(a, 4):
-                    cyclic[j + a, b - a] += bend * slopes[s, a] * slopes[s, b]
+    for i in range(len(rows)):
+        own, j, unit = rows[i], of[i], 1.0 / rows[i, 1]
+        z = own[0] * unit
+        inside = 1 / (1 - z * z)
+        slope, bend = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
+        for a in range(4):
+            right[j + a] -= slope * own[2 + a]
+            for b in range(a, 4):
+                cyclic[j + a, b - a] += bend * own[2 + a] * own[2 + b]
     band, folded = np.zeros((unknowns + BAND, BAND + 1)), np.zeros(unknowns + BAND)
     for j in range(n + 4):
         i = order[j]
@@ -344,29 +430,27 @@ def _solve(band: FloatArray, x: FloatArray) -> None:
 
 
 @compiled
-def _cubic(basis: FloatArray, j: int, c: int, x: float) -> tuple[float, float, float]:
-    """Value, first and second derivative of a basis function on span j."""
-    y, a, b, d, e = 1 - x, basis[j, c, 0], basis[j, c, 1], basis[j, c, 2], basis[j, c, 3]
+def _cubic(basis: FloatArray, c: int, x: float) -> tuple[float, float, float]:
+    """Value, first and second derivative of basis function c of a span."""
+    y, a, b, d, e = 1 - x, basis[c, 0], basis[c, 1], basis[c, 2], basis[c, 3]
     value = y * y * (y * a + 3 * x * b) + x * x * (3 * y * d + x * e)
     slope = 3 * (y * y * (b - a) + 2 * x * y * (d - b) + x * x * (e - d))
     return value, slope, 6 * (y * (d - 2 * b + a) + x * (e - 2 * d + b))
 
 
 @compiled
-def _span_basis(knots: FloatArray) -> FloatArray:
-    """(n, 4, 4) Bézier coefficients on span j of the basis functions of control points j - 1 to j + 2."""
+def _span_basis(knots: FloatArray, j: int, b: FloatArray) -> None:
+    """Write (4, 4) Bézier coefficients on span j of the basis functions of control points j - 1 to j + 2."""
     n = len(knots) - 1
-    basis = np.zeros((n, 4, 4))
-    for j in range(n):
-        e = knots[j + 1] - knots[j]
-        d, k = knots[(j - 1) % n + 1] - knots[(j - 1) % n], knots[(j + 1) % n + 1] - knots[(j + 1) % n]
-        f, g = knots[(j - 2) % n + 1] - knots[(j - 2) % n], knots[(j + 2) % n + 1] - knots[(j + 2) % n]
-        whole, b = d + e + k, basis[j]
-        b[1, 1], b[2, 1], b[1, 2], b[2, 2] = (e + k) / whole, d / whole, k / whole, (d + e) / whole
-        s = d / (d + e)
-        b[0, 0], b[2, 0] = (1 - s) * e / (f + d + e), s * b[2, 1]
-        b[1, 0] = 1 - b[0, 0] - b[2, 0]
-        s = e / (e + k)
-        b[3, 3], b[1, 3] = s * e / (e + k + g), (1 - s) * b[1, 2]
-        b[2, 3] = 1 - b[3, 3] - b[1, 3]
-    return basis
+    e = knots[j + 1] - knots[j]
+    d, k = knots[(j - 1) % n + 1] - knots[(j - 1) % n], knots[(j + 1) % n + 1] - knots[(j + 1) % n]
+    f, g = knots[(j - 2) % n + 1] - knots[(j - 2) % n], knots[(j + 2) % n + 1] - knots[(j + 2) % n]
+    whole = d + e + k
+    b[:] = 0.0
+    b[1, 1], b[2, 1], b[1, 2], b[2, 2] = (e + k) / whole, d / whole, k / whole, (d + e) / whole
+    s = d / (d + e)
+    b[0, 0], b[2, 0] = (1 - s) * e / (f + d + e), s * b[2, 1]
+    b[1, 0] = 1 - b[0, 0] - b[2, 0]
+    s = e / (e + k)
+    b[3, 3], b[1, 3] = s * e / (e + k + g), (1 - s) * b[1, 2]
+    b[2, 3] = 1 - b[3, 3] - b[1, 3]

@@ -26,7 +26,7 @@ from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..closed_curves import beziers, interpolated
 from ..faithful import Fits
-from ..ladders import SMOOTH_TRIES, TRY_APART
+from ..ladders import HELD_TRIES, SMOOTH_TRIES
 from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours
@@ -50,14 +50,16 @@ THINNINGS = {"fast": 0, "best": 30}
 def smooth_fits(options: Options, tolerance: float) -> Fits:
     """Fits of a closed C2 curve to each contour, within ``tolerance`` in font units, and then closer."""
 
+    held = HELD_TRIES if options.hold_corners else ()
+    tries = (SMOOTH_TRIES[0], *held, *SMOOTH_TRIES[1:])
+
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
-        share, early = SMOOTH_TRIES[attempt]
+        share, early = tries[attempt]
         search = _Search(all_cubics(contours)[None], contours.offsets, None, options, share * tolerance)
-        # When contours are drawn apart strands lie too near to each other to be faired.
-        search.search(attempt == 0, early, attempt < TRY_APART)
+        search.search(attempt <= len(held), early, attempt == 0)
         return search.converted(contours, tolerance)
 
-    return Fits(len(SMOOTH_TRIES), fit, apart=TRY_APART)
+    return Fits(len(tries), fit, closer=len(held) + 1, apart=len(tries) - 1)
 
 
 class SmoothCurve(NamedTuple):
@@ -97,8 +99,8 @@ class Round:
 
     Attributes:
         trial: the polygons, and the distances of the curves as written from the outline.
-        found: the curves through the polygons. pieces: ragged (n, K, 4, 2), the curves as Béziers; written: (n, V,
-            4, 2), plain ones rounded as they are written, those of masters in the instances that are measured.
+            Plain ones are measured as they are written, those of masters in the instances that are measured.
+        found: the curves through the polygons. pieces: ragged (n, K, 4, 2), the curves as Béziers.
         held: ragged, the vertices whose control points stay at them; () where none does.
         most: (k,) the largest bound of each contour.
     """
@@ -106,42 +108,12 @@ class Round:
     trial: steps.Trial
     found: BatchedInterpolation
     pieces: FloatArray
-    written: FloatArray
     held: BoolArray
     most: FloatArray
 
     def part(self, values: Any, i: int) -> Any:
         """Part i of a ragged array."""
         return values[self.trial.offsets[i] : self.trial.offsets[i + 1]]
-
-
-class Gathered(NamedTuple):
-    """What is kept of some contours, end to end; see :func:`.fairing.faired`."""
-
-    offsets: IntArray
-    places: FloatArray
-    points: FloatArray
-    ends: FloatArray
-    pieces: FloatArray
-    knots: FloatArray
-    parameters: FloatArray
-    held: BoolArray
-
-    @classmethod
-    def of(cls, kept: Sequence[tuple[Round, int]]) -> Gathered:
-        """Parts of rounds, in order."""
-        columns: list[list[Any]] = [[] for _ in range(7)]
-        for found, i in kept:
-            a, b = found.trial.offsets[i : i + 2].tolist()
-            held = found.held[a:b] if len(found.held) else np.zeros(b - a, dtype=np.bool_)
-            whole = slice(a + i, b + i + 1)
-            parts = (
-                found.trial.places[a:b], found.trial.points[a:b], found.trial.ends[whole], found.pieces[a:b],
-                found.found.arrays.knots[whole], found.found.arrays.parameters[a:b], held,
-            )  # fmt: skip
-            for column, part in zip(columns, parts, strict=True):
-                column.append(part)
-        return cls(offsets_of([len(part) for part in columns[0]]), *map(np.concatenate, columns))
 
 
 def _mixed(mixes: FloatArray, cubics: FloatArray) -> FloatArray:
@@ -242,34 +214,53 @@ class _Search:
 
     def fair(self) -> None:
         """Let vertices leave the outline where a contour that passed bends more often than it has to."""
-        which = np.array([k for k, found in sorted(self.kept.items()) if self.passes(found)], dtype=np.int64)
-        if len(which) == 0:
+        rounds: dict[int, tuple[Round, BoolArray]] = {}
+        for found, i in self.kept.values():
+            _, keep = rounds.setdefault(id(found), (found, np.zeros(len(found.most), dtype=np.bool_)))
+            keep[i] = found.most[i] <= self.near
+        if not rounds:
             return
-        before = Gathered.of([self.kept[k] for k in which.tolist()])
-        counts = np.diff(before.offsets)
-        floors, lengths = fairing.floors(self.contours, which)
-        extrema, peaks = fairing.bends(lengths, before.offsets, before.pieces)
-        most = fairing.PEAK * np.maximum.reduceat(peaks, before.offsets[:-1])
-        some = (extrema > floors).any(axis=1) & (counts >= fairing.FEWEST)
-        # What is straight stays.
-        straight = fairing.STRAIGHT / np.repeat(lengths, counts, axis=0)
-        limits = np.where(peaks > straight, fairing.LIMIT * self.near, 0.0)
+        parts = [self.uneven(found, keep) for found, keep in rounds.values()]
+        counts, before, most, limits, *others = map(np.concatenate, zip(*parts, strict=True))
+        splines, trial = fairing.Splines(*others[:4]), steps.Trial(*others[4:])._replace(offsets=offsets_of(counts))
+        again, moved, known = limits > 0, trial.points.copy(), trial
         for _ in range(fairing.TRIES):
-            if not some.any():
+            if len(before) == 0:
                 break
-            points = fairing.faired(self.contours, which, *before, limits, self.near, some)
-            rows, left = np.repeat(some, counts), np.flatnonzero(some)
-            offsets = offsets_of(counts[left])
-            done = self.run(which[left], before.places[rows], offsets, points[rows])
-            if len(done.pieces) < offsets[-1]:  # vertices fell together
+            fairing.fair(self.contours, trial, splines, limits, again, self.near, moved)
+            done = self.run(trial.which, trial.places, trial.offsets, moved, known)
+            if len(done.pieces) < len(moved):  # vertices fell together
                 break
-            count, peaks = fairing.bends(lengths[left], offsets, done.pieces)
-            good = (done.most <= self.near) & (np.maximum.reduceat(peaks, offsets[:-1]) <= most[left]).all(axis=1)
-            some[left[good]] = False
-            fewer = count.sum(axis=1) < extrema[left].sum(axis=1)
+            known, starts = done.trial, trial.offsets[:-1]
+            every = np.ones(len(before), dtype=np.bool_)
+            extrema, peaks, _ = fairing.bends(self.contours, trial, done.pieces, every, False)
+            good = (done.most <= self.near) & (np.maximum.reduceat(peaks, starts) <= most).all(axis=1)
+            fewer = extrema.sum(axis=1) < before
             for n in np.flatnonzero(good & fewer & (done.found.arrays.rates < 1)).tolist():
-                self.kept[int(which[left[n]])] = done, n
-            limits[rows] = fairing.lowered(limits[rows], offsets, done.trial.bounds, self.near, peaks, most[left])
+                self.kept[int(trial.which[n])] = done, n
+            again = fairing.lowered(limits, trial.offsets, done.trial.bounds, self.near, peaks, most)
+            left = ~good & np.logical_or.reduceat(again, starts).any(axis=1)
+            columns = (before, most, limits, again, moved, *splines, *known, *trial)
+            before, most, limits, again, moved, *others = steps.chosen(columns, trial.offsets, left)
+            splines, known, trial = fairing.Splines(*others[:4]), steps.Trial(*others[4:13]), steps.Trial(*others[13:])
+
+    def uneven(self, found: Round, keep: BoolArray) -> list[Any]:
+        """What :meth:`fair` begins with, of the contours that are to be faired among some of a round.
+
+        Returns:
+            Numbers of vertices, extrema, largest curvature allowed, limits, and columns of splines and of the trial.
+        """
+        trial, arrays = found.trial, found.found.arrays
+        extrema, peaks, uneven = fairing.bends(self.contours, trial, found.pieces, keep, True)
+        starts, counts = trial.offsets[:-1], np.diff(trial.offsets)
+        most = fairing.PEAK * np.maximum.reduceat(peaks, starts)
+        limits = np.where(uneven, fairing.LIMIT * self.near, 0.0)
+        held = found.held if len(found.held) else np.zeros(len(found.pieces), dtype=np.bool_)
+        columns = (
+            counts, extrema.sum(axis=1), most, limits, arrays.controls, arrays.knots, arrays.parameters, held, *trial
+        )  # fmt: skip
+        keep = np.logical_or.reduceat(uneven, starts).any(axis=1) & (counts >= fairing.FEWEST)
+        return steps.chosen(columns, trial.offsets, keep)
 
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
         """Interpolate contours through their points at places, measure, and keep improvements."""
@@ -279,8 +270,15 @@ class _Search:
                 self.kept[k] = done, i
         return done
 
-    def run(self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray) -> Round:
-        """Interpolate contours through points at their places, or beside them, and measure."""
+    def run(
+        self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
+        known: steps.Trial = steps.NOT_TRIED,
+    ) -> Round:  # fmt: skip
+        """Interpolate contours through points at their places, or beside them, and measure.
+
+        Args:
+            known: see :func:`.steps.measured`.
+        """
         try:
             held = steps.held_corners(self.contours, which, places, offsets, self.angle, self.hold)
             held = held if held.any() else NONE_HELD
@@ -296,8 +294,8 @@ class _Search:
             return self.run(which, places[kept], offsets_of([len(part) for part in parts]), points[kept])
         pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 10.0**self.options.precision)
         written = written if self.mixes is None else _mixed(self.mixes, pieces)
-        trial = steps.measured(self.instances, which, places, offsets, points, written.reshape(-1, 4, 2), self.near)
-        return Round(trial, found, pieces, written, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
+        trial = steps.measured(self.instances, which, places, offsets, points, written, self.near, known)
+        return Round(trial, found, pieces, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
 
     def passes(self, found: tuple[Round, int]) -> bool:
         """Whether a part of a round is within the distance allowed."""
@@ -353,7 +351,7 @@ class _Search:
     def certificate(self, k: int, tolerance: float) -> tuple[float, float]:
         """Certified bound, and distance seen, of the curve kept for contour k."""
         (found, i), trial = self.kept[k], self.kept[k][0].trial
-        written, outline = found.part(found.written, i)[:, 0], chain_of(self.contours, k)
+        written, outline = found.part(trial.pieces, i)[:, 0], chain_of(self.contours, k)
         ends = trial.ends[trial.offsets[i] + i : trial.offsets[i + 1] + i + 1]
         spans = found.part(trial.bounds, i), found.part(trial.gaps, i)
         bound, gap = steps.sharpened(written, outline, *spans, ends, SHARPNESS * tolerance)

@@ -6,16 +6,18 @@ belongs to contour ``which[i]`` and is ``values[offsets[i]:offsets[i + 1]]``.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...arrays import ascending, grown
 from ...compiled import compiled
 from ...curves.cubics import extent
-from ...curves.nearest import near_places
+from ...curves.nearest import near_place
 from ...curves.pairing import ROUNDING, pair_span, room_for
 from ...interpolation.kernels.driver import distance
+from ...outlines.contour_arrays import offsets_of
 from ...types import BoolArray, FloatArray, IntArray
 from .canonical_contours import TABLE, CanonicalContours, chain_of, points_at, table_of
 from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, off_corners, spans_after, with_more
@@ -84,7 +86,8 @@ class Trial(NamedTuple):
     """Polygons of some contours, and how far the curves through them are from the outlines; ragged, a row a span.
 
     Attributes:
-        which: (k,) numbers of the contours. places, offsets, points: the vertices.
+        which: (k,) numbers of the contours. places, offsets, points: the vertices. pieces: (n, V, 4, 2) the curves as
+            they are written, in V instances.
         bounds, gaps, worst: certified bounds of the spans, gaps seen, and the places of these on the outline.
         ends: where the stretch of outline that a span is paired with begins; those of part i begin at
             ``offsets[i] + i``, and the first is repeated a lap later.
@@ -94,36 +97,74 @@ class Trial(NamedTuple):
     places: FloatArray
     offsets: IntArray
     points: FloatArray
+    pieces: FloatArray
     bounds: FloatArray
     gaps: FloatArray
     worst: FloatArray
     ends: FloatArray
 
 
+NOT_TRIED = Trial(
+    np.empty(0, np.int64),
+    np.empty(0),
+    np.empty(0, np.int64),
+    np.empty((0, 2)),
+    np.empty((0, 1, 4, 2)),
+    *np.empty((4, 0)),
+)
+"""No polygons."""
+
+
+def chosen(columns: Sequence[Any], offsets: IntArray, keep: BoolArray) -> list[Any]:
+    """Some parts of ragged arrays: offsets like these, or arrays with a row a part, a row a vertex, or one more a part.
+
+    A part has several vertices, so that lengths tell which is which.
+    """
+    counts = np.diff(offsets)
+    rows = {len(row): np.flatnonzero(row) for row in (keep, np.repeat(keep, counts), np.repeat(keep, counts + 1))}
+    new = offsets_of(counts[keep])
+    return [new if len(column) == len(offsets) else column.take(rows[len(column)], axis=0) for column in columns]
+
+
 @compiled
 def measured(
     contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
-    pieces: FloatArray, near: float,
+    pieces: FloatArray, near: float, known: Trial,
 ) -> Trial:  # fmt: skip
     """Measure closed curves with vertices at ``places`` of their contours, only as sharply as the search needs.
 
     A span is paired with the stretch of outline between the points nearest to its ends.
 
     Args:
-        contours: in V instances. pieces: (n V, 4, 2) the curves as they are written. near: the distance allowed.
+        contours: in V instances. pieces: (n, V, 4, 2) the curves as they are written. near: the distance allowed.
+        known: a trial with vertices at the same places, of which the spans that are the same are not measured again;
+            or one without any.
     """
     n, V, arc = len(places), len(contours.cubics) // len(contours.turns), np.empty(0)
+    same = np.zeros(n, dtype=np.bool_)
+    for j in range(len(known.pieces)):
+        same[j] = (pieces[j] == known.pieces[j]).all()
     if V > 1:
         arc = np.array([-np.inf, np.inf, -np.inf, np.inf])
     work, marks, found = room_for(V)
     bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
     for i in range(len(which)):
         a, b = offsets[i], offsets[i + 1]
-        outline, spans = chain_of(contours, which[i]), pieces[a * V : b * V]
+        outline, spans = chain_of(contours, which[i]), pieces[a:b].reshape((-1, 4, 2))
         begins, rounding = ends[a + i : b + i + 1], ROUNDING * max(extent(spans), extent(outline))
-        near_places(V, outline, places[a:b], spans, True, 0.0, 0.0, begins)
-        begins[b - a] = begins[0] + len(outline) // V
+        lap = len(outline) / V
         for j in range(b - a):
+            if same[a + j]:
+                begins[j] = known.ends[a + i + j]
+                continue
+            before, here = places[a + j - 1] if j > 0 else places[b - 1] - lap, places[a + j]
+            after = places[a + j + 1] if a + j + 1 < b else places[a] + lap
+            begins[j] = near_place(V, outline, here, (before + here) / 2, (here + after) / 2, spans, j)
+        begins[b - a] = begins[0] + lap
+        for j in range(b - a):
+            if same[a + j]:
+                bounds[a + j], gaps[a + j], worst[a + j] = known.bounds[a + j], known.gaps[a + j], known.worst[a + j]
+                continue
             y, y_end = begins[j], begins[j + 1]
             found[0], found[1], found[2] = 0.0, 0.0, (y + y_end) / 2
             pair_span(
@@ -131,7 +172,7 @@ def measured(
                 V, spans, j, 0.0, 1.0, outline, y, y_end, arc, False, near - rounding, 0.1 * near, work, marks, found,
             )  # fmt: skip
             bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1], found[2]
-    return Trial(which, places, offsets, points, bounds, gaps, worst, ends)
+    return Trial(which, places, offsets, points, pieces, bounds, gaps, worst, ends)
 
 
 @compiled
@@ -172,7 +213,7 @@ def changed(
         power: the error of a span is assumed to grow with this power of its length.
         anew: whether more vertices are respaced, evenly, or inserted into the spans that miss the tolerance.
     """
-    which, places, offsets, points, bounds, gaps, worst, _ = trial
+    which, places, offsets, points, _, bounds, gaps, worst, _ = trial
     those, new = np.empty(len(which), dtype=np.int64), np.zeros(len(which) + 1, dtype=np.int64)
     values, count = np.empty(len(places) + 1024), 0
     growth = np.log(factor)
