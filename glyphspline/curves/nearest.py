@@ -16,6 +16,10 @@ from .cubics import CLOSE, STEPS, jet, nearest, newton_step
 COARSE = 8
 """Intervals a segment whose ends are compared for a first guess of the nearest point."""
 
+TIE = 1e-9
+"""Share of a squared distance by which a place in another segment has to be nearer. Inside a corner a curve is as far
+from both sides, and rounding errors, which depend on where the outline lies, would decide."""
+
 
 @compiled
 def nearest_together(
@@ -85,7 +89,7 @@ def near_place(V: int, chain: FloatArray, place: float, low: float, high: float,
                 break
             z = nearest_together(V, chain, s % n, a - s, b - s, here - s, other, p, 0)
             d = square_to(V, chain, s % n, z, other, p, 0)
-            if d < best:
+            if d < best * (1 - TIE):
                 best, at = d, s + z
             end = b if step == 0 else a
             if s + z != end or end in (low, high):

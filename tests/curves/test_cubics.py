@@ -10,7 +10,7 @@ from glyphspline.compiled import compiled
 from glyphspline.curves.bezier import evaluate, split
 from glyphspline.curves.cubics import bernstein, hidden_extrema, length_table, section, spline_beziers, turns
 from glyphspline.curves.cubics import split as cut
-from glyphspline.curves.nearest import search_place
+from glyphspline.curves.nearest import near_place, search_place
 from glyphspline.types import FloatArray
 from tests.polygons import circle_contour, random_polygon, square_contour
 
@@ -95,3 +95,17 @@ def test_hidden_extrema_are_the_derivatives_changes_of_sign_between_the_ends() -
             inside = roots[(np.abs(roots.imag) < 1e-9) & (roots.real > 1e-9) & (roots.real < 1 - 1e-9)].real
             expected += len(inside) if len(inside) < 2 or np.ptp(inside) > 1e-6 else 0
         assert hidden_extrema(points) == expected, points
+
+
+def test_inside_a_corner_the_same_side_is_the_nearest_wherever_it_lies() -> None:
+    forward = set()
+    for shift in ((0, 0), (37, -112), (1024, 2048), (333, -77), (-0.25, 0.1)):
+        square = square_contour().cubics() + np.array(shift)
+        for k in range(1, 4):
+            inward = np.sign(square[:, 0].mean(axis=0) - square[k, 0])
+            for depth in (0.11, 0.5, 0.87, 0.93):
+                point = np.round(square[k, 0] + depth * inward, 2)
+                place = near_place(1, square, float(k), k - 0.5, k + 0.5, np.tile(point, (1, 4, 1)), 0)
+                assert abs(abs(place - k) * 100 - depth) < 1e-6
+                forward.add(place > k)
+    assert forward == {True}
