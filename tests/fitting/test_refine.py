@@ -305,3 +305,19 @@ def test_how_far_off_the_curve_is_at_held_corners_is_known_from_the_chords() -> 
     assert off.min() > 0.5
     np.testing.assert_allclose(errors[corners], off, rtol=0.25)
     assert not errors[corners - 2].any()
+
+
+def test_spans_that_fail_lower_what_moves_them() -> None:
+    offsets, bounds, most = np.array([0, 14]), np.full(14, 0.9), np.ones((1, 1))
+    first = np.array([[0.9] * 5 + [0.0] * 4 + [0.9] * 3 + [0.0] * 2]).T  # two runs of spans that move
+    bounds[[1, 7]] = 1.2, 0.95
+    limits = first.copy()
+    again = fairing.lowered(limits, offsets, bounds, 1.0, np.zeros((14, 1)), most)
+    assert np.flatnonzero(again).tolist() == [0, 1, 2, 3, 4]
+    np.testing.assert_allclose(limits[:3], 0.9 * fairing.CUT / 1.2)
+    np.testing.assert_array_equal(limits[3:], first[3:])
+    bounds[[1, 7]] = 0.9, 1.2  # nothing beside it moves
+    limits = first.copy()
+    again = fairing.lowered(limits, offsets, bounds, 1.0, np.zeros((14, 1)), most)
+    assert np.flatnonzero(again).tolist() == [0, 1, 2, 3, 4, 9, 10, 11]
+    assert np.flatnonzero(limits < first).tolist() == [3, 4, 9, 10, 11]

@@ -8,8 +8,6 @@ squares; a logarithmic barrier keeps samples of the curve near the outline. Each
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ...compiled import compiled
@@ -58,20 +56,6 @@ FEWEST = 9
 
 BAND = 9
 """Diagonals of the equations, in the order of :func:`_order`."""
-
-
-class Splines(NamedTuple):
-    """The curves of a :class:`.steps.Trial`, ragged, before they are rounded.
-
-    Attributes:
-        controls: (n, 2 K). knots, parameters: of the splines, and of footpoints. held: (n,) the vertices whose control
-            points are held.
-    """
-
-    controls: FloatArray
-    knots: FloatArray
-    parameters: FloatArray
-    held: BoolArray
 
 
 @compiled
@@ -160,7 +144,8 @@ def lowered(
         a, n = offsets[i], offsets[i + 1] - offsets[i]
         for v in range(limits.shape[1]):
             for j in range(n):
-                for c in range(-1, 2):
+                reach = 1 if before[a + j, v] > 0 else 4  # what does not move itself is moved from farther away
+                for c in range(-reach, reach + 1):
                     at, share = a + (j + c) % n, 1.0
                     if peaks[a + j, v] > most[i, v] or (bounds[a + j] > near and before[at, v] < LIMIT * near):
                         share = 0.0
@@ -177,12 +162,14 @@ def lowered(
 
 @compiled
 def fair(
-    contours: CanonicalContours, trial: Trial, splines: Splines, limits: FloatArray, again: BoolArray, near: float,
-    moved: FloatArray,
+    contours: CanonicalContours, trial: Trial, controls: FloatArray, knots: FloatArray, parameters: FloatArray,
+    held: BoolArray, limits: FloatArray, again: BoolArray, near: float, moved: FloatArray,
 ) -> None:  # fmt: skip
-    """Write the new vertices of curves; those of held control points stay.
+    """Write the new vertices of the curves of a trial; those of held control points stay.
 
     Args:
+        controls: (n, 2 K). knots, parameters: of the splines, and of footpoints. held: (n,) vertices whose control
+            points are held.
         limits: (n, K) largest distance of samples of each span from the outline; 0 where nothing moves.
         again: (n, K) the spans to be faired. near: the distance allowed, in font units.
         moved: (n, 2 K), which change beside these spans.
@@ -200,10 +187,10 @@ def fair(
             if not again[a:b, v].any():
                 continue
             outline, _ = in_master(contours, which[i], v)
-            P = splines.controls[a:b, 2 * v : 2 * v + 2]
+            P = controls[a:b, 2 * v : 2 * v + 2]
             _fair(
-                outline, np.concatenate((P[-1:], P, P[:2])), splines.knots[a + i : b + i + 1], splines.parameters[a:b],
-                splines.held[a:b], trial.ends[a + i : b + i + 1], least, near, np.sqrt(limits.shape[1]), own,
+                outline, np.concatenate((P[-1:], P, P[:2])), knots[a + i : b + i + 1], parameters[a:b],
+                held[a:b], trial.ends[a + i : b + i + 1], least, near, np.sqrt(limits.shape[1]), own,
             )  # fmt: skip
             if np.isfinite(own).all():  # or else the curve has no speed somewhere, as where a contour collapses
                 moved[a:b, 2 * v : 2 * v + 2] = own

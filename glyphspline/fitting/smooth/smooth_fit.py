@@ -221,28 +221,33 @@ class _Search:
         if not rounds:
             return
         parts = [self.uneven(found, keep) for found, keep in rounds.values()]
-        counts, before, most, limits, *others = map(np.concatenate, zip(*parts, strict=True))
-        splines, trial = fairing.Splines(*others[:4]), steps.Trial(*others[4:])._replace(offsets=offsets_of(counts))
+        counts, before, most, limits, controls, knots, parameters, held, *columns = map(
+            np.concatenate, zip(*parts, strict=True)
+        )
+        trial = steps.Trial(*columns)._replace(offsets=offsets_of(counts))
         again, moved, known = limits > 0, trial.points.copy(), trial
         for _ in range(fairing.TRIES):
             if len(before) == 0:
                 break
-            fairing.fair(self.contours, trial, splines, limits, again, self.near, moved)
+            fairing.fair(self.contours, trial, controls, knots, parameters, held, limits, again, self.near, moved)
             done = self.run(trial.which, trial.places, trial.offsets, moved, known)
             if len(done.pieces) < len(moved):  # vertices fell together
                 break
             known, starts = done.trial, trial.offsets[:-1]
-            every = np.ones(len(before), dtype=np.bool_)
-            extrema, peaks, _ = fairing.bends(self.contours, trial, done.pieces, every, False)
+            extrema, peaks, _ = fairing.bends(
+                self.contours, trial, done.pieces, np.ones(len(before), dtype=np.bool_), False
+            )
             good = (done.most <= self.near) & (np.maximum.reduceat(peaks, starts) <= most).all(axis=1)
             fewer = extrema.sum(axis=1) < before
             for n in np.flatnonzero(good & fewer & (done.found.arrays.rates < 1)).tolist():
                 self.kept[int(trial.which[n])] = done, n
             again = fairing.lowered(limits, trial.offsets, done.trial.bounds, self.near, peaks, most)
             left = ~good & np.logical_or.reduceat(again, starts).any(axis=1)
-            columns = (before, most, limits, again, moved, *splines, *known, *trial)
-            before, most, limits, again, moved, *others = steps.chosen(columns, trial.offsets, left)
-            splines, known, trial = fairing.Splines(*others[:4]), steps.Trial(*others[4:13]), steps.Trial(*others[13:])
+            every = (before, most, limits, again, moved, controls, knots, parameters, held, *known, *trial)
+            before, most, limits, again, moved, controls, knots, parameters, held, *columns = steps.chosen(
+                every, trial.offsets, left
+            )
+            known, trial = steps.Trial(*columns[:9]), steps.Trial(*columns[9:])
 
     def uneven(self, found: Round, keep: BoolArray) -> list[Any]:
         """What :meth:`fair` begins with, of the contours that are to be faired among some of a round.
