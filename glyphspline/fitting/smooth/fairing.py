@@ -208,7 +208,7 @@ def _fair(
             c of span j. unit: of the knots, about, in font units.
     """
     n = len(held)
-    length, basis, normals = knots[n] - knots[0], np.empty((n, 4, 4)), np.zeros((n + 3, 2))
+    length, basis, normals = knots[n] - knots[0], np.zeros((n, 4, 4)), np.zeros((n + 3, 2))
     spans, local, reached = np.empty(n, dtype=np.int64), np.empty(n), np.zeros(n, dtype=np.bool_)
     for j in range(n):
         reached[j] = max(max(limits[j], limits[j - 1]), max(limits[j - 2], limits[(j + 1) % n])) > 0
@@ -427,13 +427,12 @@ def _cubic(basis: FloatArray, c: int, x: float) -> tuple[float, float, float]:
 
 @compiled
 def _span_basis(knots: FloatArray, j: int, b: FloatArray) -> None:
-    """Write (4, 4) Bézier coefficients on span j of the basis functions of control points j - 1 to j + 2."""
+    """Write Bézier coefficients of the basis functions of control points j - 1 to j + 2 on span j, to (4, 4) zeros."""
     n = len(knots) - 1
     e = knots[j + 1] - knots[j]
     d, k = knots[(j - 1) % n + 1] - knots[(j - 1) % n], knots[(j + 1) % n + 1] - knots[(j + 1) % n]
     f, g = knots[(j - 2) % n + 1] - knots[(j - 2) % n], knots[(j + 2) % n + 1] - knots[(j + 2) % n]
     whole = d + e + k
-    b[:] = 0.0
     b[1, 1], b[2, 1], b[1, 2], b[2, 2] = (e + k) / whole, d / whole, k / whole, (d + e) / whole
     s = d / (d + e)
     b[0, 0], b[2, 0] = (1 - s) * e / (f + d + e), s * b[2, 1]
