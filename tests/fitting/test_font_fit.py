@@ -135,7 +135,7 @@ def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArra
         own = outline.arrays.part(c, c + 1)
         stored = stored_points(own)
         assert stored is not None
-        rows.append((own, of_points(points, on), len(stored[0]), len(points)))
+        rows.append((own, of_points(points, on), len(stored[1]), len(points)))
     return rows
 
 

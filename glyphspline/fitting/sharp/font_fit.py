@@ -16,6 +16,7 @@ from ...curves.cubics import turns
 from ...curves.nearest import near_places
 from ...curves.pairing import SHARPNESS, pair_instances
 from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ...outlines.masters import quadratics
 from ...outlines.segments import all_cubics, farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
 from ..faithful import Fits
@@ -26,7 +27,8 @@ from ..results import ConvertedContours, not_fitted
 from .corners import NO_HANDLE, find_joints
 from .font_curves import CORNER, KEPT, Limits, cut_at, fit_contour, mixed
 from .font_curves import KINK as KINKED
-from .font_quadratics import fit_contour as fit_contour_quadratics
+from .font_quadratics import Stored
+from .font_quadratics import fit_contour as fit_quadratics
 from .settings import EFFORTS, LONG_LINE, Settings
 
 GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
@@ -309,26 +311,73 @@ def quadratic_points(
     found, reached = [], 0.0
     for c in range(source.num_contours):
         own = source.part(c, c + 1)
-        stored = stored_points(own)
+        points, on, far = quadratic_contour([own], stored_points(own), ONE, ONE, options, tolerance, em)
+        found.append((points[0], on))
+        reached = max(reached, far)
+    return found, reached
+
+
+def quadratic_contour(
+    sources: Sequence[ContourArrays], stored: tuple[FloatArray, BoolArray] | None, corners: FloatArray,
+    mixes: FloatArray, options: Options, tolerance: float, em: float, stays: BoolArray | None = None,
+) -> tuple[FloatArray, BoolArray, float]:  # fmt: skip
+    """Points (K, n, 2) of one contour in K masters as TrueType stores them, and whether each is on the curve.
+
+    Args:
+        stored: points (K, n, 2) as they are, and which are on the curve, where the source is these but for rounding.
+        corners, mixes: see :func:`fit_for_fonts`. stays: (m,) segments that are to stay as they are.
+
+    Returns:
+        Also a bound of their distance from the source.
+    """
+
+    def fit(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, BoolArray, float]:
         settings = EFFORTS[options.effort](
             near=tolerance if stored else tolerance / DENSER, angle=float(np.radians(options.corner_angle)),
             line=LONG_LINE * em, c2=False, margin=0.0, residual=0.0,
         )  # fmt: skip
-        points, on, far = fit_contour_quadratics(all_cubics(own), own.degrees, settings, tolerance, stored is not None)
-        if stored is None:
-            first, turned = of_points(points, on), _turns_in(own)
-            for least in SLIDES if _turns_in(first) > turned else ():
-                cut = with_cut_lines(own, first, least)
-                if cut is None or _turns_in(of_points(points, on)) <= turned:
-                    break
-                other = fit_contour_quadratics(all_cubics(cut), cut.degrees, settings, tolerance, False)
-                if other[2] <= tolerance and _turns_in(of_points(*other[:2])) < _turns_in(of_points(points, on)):
-                    points, on, far = other
-            stored, reached = (points, on), max(reached, far)
-        elif 0 < len(points) < len(stored[0]) and not _more_findings(own, of_points(points, on), em):
-            stored, reached = begun_as(points, on, stored), max(reached, far)
-        found.append(stored)
-    return found, reached
+        return fit_quadratics(cubics, degrees, settings, tolerance, as_stored(cubics, stored, stays), corners, mixes)
+
+    cubics, degrees = np.stack([all_cubics(master) for master in sources]), sources[0].degrees
+    points, on, far = fit(cubics, degrees)
+    if stored is None:
+        if len(sources) > 1:
+            return points, on, far
+        own = sources[0]
+        first, turned = of_points(points[0], on), _turns_in(own)
+        for least in SLIDES if _turns_in(first) > turned else ():
+            cut = with_cut_lines(own, first, least)
+            if cut is None or _turns_in(of_points(points[0], on)) <= turned:
+                break
+            other = fit(all_cubics(cut)[None], cut.degrees)
+            if other[2] <= tolerance and _turns_in(of_points(other[0][0], other[1])) < _turns_in(
+                of_points(points[0], on)
+            ):
+                points, on, far = other
+        return points, on, far
+    if 0 < len(on) < len(stored[1]) and (
+        len(sources) > 1 or not _more_findings(sources[0], of_points(points[0], on), em)
+    ):
+        return (*begun_as(points, on, stored), far)
+    return (*stored, as_stored(cubics, stored).drift)
+
+
+def as_stored(
+    cubics: FloatArray, stored: tuple[FloatArray, BoolArray] | None, stays: BoolArray | None = None
+) -> Stored:
+    """What is stored of a contour (K, m, 4, 2) by its segments."""
+    K, m = cubics.shape[:2]
+    if stored is None:
+        nothing = np.empty((K, m, 2))
+        return Stored(False, np.rint(cubics[:, :, 0]), nothing, np.zeros(m, np.bool_), 0.0, np.zeros(m, np.bool_))
+    points, degrees, implied = quadratics(*stored)
+    starts = np.cumsum(degrees) - degrees
+    node, control = points[:, starts], points[:, np.minimum(starts + 1, points.shape[1] - 1)]
+    exact = np.where((degrees == 2)[:, None], (3 * cubics[:, :, 1] - cubics[:, :, 0]) / 2, control)
+    drift = max(np.abs(each).max() for each in (node - cubics[:, :, 0], control - exact))
+    node, control = (np.ascontiguousarray(each) for each in (node, control))
+    stays = np.zeros(m, np.bool_) if stays is None else stays
+    return Stored(True, node, control, implied, float(np.sqrt(2) * drift), stays)
 
 
 SLIDES = (1, 3, 6, 10, 15, 21)
@@ -408,7 +457,7 @@ def _share_of_line(far: FloatArray, end: FloatArray, least: int) -> float | None
 
 
 def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None:
-    """The points of one contour as TrueType stores them, without those midway between control points.
+    """The points (1, n, 2) of one contour as TrueType stores them, without those midway between control points.
 
     None if one is off the grid, or a segment is a cubic.
     """
@@ -425,34 +474,22 @@ def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None
     points, on = points[~implied], on[~implied]
     if np.abs(points - np.rint(points)).max() > 1e-6:
         return None
-    return np.rint(points), on
+    return np.rint(points)[None], on
 
 
 def of_points(points: FloatArray, on: BoolArray) -> ContourArrays:
-    """A contour from points as TrueType stores them, the first on the curve."""
-    found, degrees = [], []
-    for k in range(len(points)):
-        if on[k]:
-            found.append(points[k])
-            continue
-        if not on[k - 1]:
-            found.append((points[k - 1] + points[k]) / 2)
-        found.append(points[k])
-    whole = np.array(found)
-    k = 0
-    for s in range(len(points)):
-        degrees += [2] if not on[s] else [1] if on[(s + 1) % len(points)] else []
-    counts = np.array(degrees)
-    return ContourArrays(whole, counts, np.array([0, len(counts)]), np.array([0, len(whole)]))
+    """A contour from points (n, 2) as TrueType stores them."""
+    whole, degrees, _ = quadratics(points[None], on)
+    return ContourArrays(whole[0], degrees, np.array([0, len(degrees)]), np.array([0, whole.shape[1]]))
 
 
 def begun_as(points: FloatArray, on: BoolArray, stored: tuple[FloatArray, BoolArray]) -> tuple[FloatArray, BoolArray]:
     """Points from the first one on the curve that others, which are stored, have too."""
-    here = {tuple(point): k for k, point in reversed(list(enumerate(points.tolist()))) if on[k]}
+    here = {tuple(point): k for k, point in reversed(list(enumerate(points[0].tolist()))) if on[k]}
     first = next(
-        (here[tuple(p)] for p, own in zip(stored[0].tolist(), stored[1], strict=True) if own and tuple(p) in here), 0
+        (here[tuple(p)] for p, own in zip(stored[0][0].tolist(), stored[1], strict=True) if own and tuple(p) in here), 0
     )
-    return np.roll(points, -first, axis=0), np.roll(on, -first)
+    return np.roll(points, -first, axis=1), np.roll(on, -first)
 
 
 def _more_findings(source: ContourArrays, made: ContourArrays, em: float) -> bool:

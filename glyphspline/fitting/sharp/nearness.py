@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import length
+from ...curves.cubics import length, newton_step
 from ...curves.nearest import near_place
 from ...curves.pairing import pair_span, room_for
 from ...types import BoolArray, FloatArray
@@ -27,6 +27,54 @@ def feet(p: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArr
 
 
 @compiled
+def shared_feet(P: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+    """Pair samples (K, n, 2) with the points of cubics (K, 4, 2) at the same places in all masters; see :func:`feet`.
+
+    Args:
+        c: (K, 3, 2) receives the cubics' coefficients. e: (n,) the largest distances; in several masters across them.
+    """
+    K, n, low, worst = len(P), Q.shape[1], 0.0, 0.0
+    if K == 1:
+        return feet(P[0], Q[0], c[0], x, e)
+    for v in range(K):
+        for axis in range(2):
+            a, b, d, f = P[v, 0, axis], P[v, 1, axis], P[v, 2, axis], P[v, 3, axis]
+            c[v, 0, axis], c[v, 1, axis], c[v, 2, axis] = 3 * (b - a), 3 * (d - 2 * b + a), f - a - 3 * (d - b)
+    for j in range(1, n - 1):
+        t = max(x[j], low)
+        for _ in range(4):
+            slope = speed = bend = 0.0
+            for v in range(K):
+                for axis in range(2):
+                    c1, c2, c3 = c[v, 0, axis], c[v, 1, axis], c[v, 2, axis]
+                    off = ((c3 * t + c2) * t + c1) * t + P[v, 0, axis] - Q[v, j, axis]
+                    d = (3 * c3 * t + 2 * c2) * t + c1
+                    slope, speed, bend = slope + off * d, speed + d * d, bend + off * (6 * c3 * t + 2 * c2)
+            if speed <= 0:
+                break
+            new = newton_step(t, slope, speed, speed + bend, low, 1.0)
+            move = abs(new - t)
+            t = new
+            if move < 1e-3:
+                break
+        low, x[j], e[j] = t, t, 0.0
+        for v in range(K):
+            x0, y0, size = P[v, 0, 0] - Q[v, j, 0], P[v, 0, 1] - Q[v, j, 1], 0.0
+            px, py = (
+                ((c[v, 2, 0] * t + c[v, 1, 0]) * t + c[v, 0, 0]) * t + x0,
+                ((c[v, 2, 1] * t + c[v, 1, 1]) * t + c[v, 0, 1]) * t + y0,
+            )
+            dx, dy = (
+                (3 * c[v, 2, 0] * t + 2 * c[v, 1, 0]) * t + c[v, 0, 0],
+                (3 * c[v, 2, 1] * t + 2 * c[v, 1, 1]) * t + c[v, 0, 1],
+            )
+            size = length(dx, dy)
+            e[j] = max(e[j], abs(px * dy - py * dx) / size if size > 0.0 else length(px, py))
+        worst = max(worst, e[j])
+    return worst
+
+
+@compiled
 def reweight(weight: FloatArray, e: FloatArray, worst: float) -> None:
     """Weights of inner samples grow with their errors, their mean staying 1: squares turn to the least maximum."""
     n, total = len(weight), 0.0
@@ -39,13 +87,15 @@ def reweight(weight: FloatArray, e: FloatArray, worst: float) -> None:
 
 @compiled
 def sample_form(
-    p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, unit: float, form: FloatArray
+    p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, unit: float, form: FloatArray,
+    slip: float = 0.0,
 ) -> float:  # fmt: skip
     """The normal equations of what brings a cubic nearer to samples, across it, when its points move.
 
     Args:
         p: (4, 2) the cubic. c, x: of :func:`feet`. Q: (n, 2), weight: (n,) samples. unit: of length.
         form: (8, 9) receives the form in the points' coordinates, and its right-hand side.
+        slip: weight of what brings it nearer along it.
 
     Returns:
         The mean squared distance as it is.
@@ -65,13 +115,15 @@ def sample_form(
         py = ((c[2, 1] * t + c[1, 1]) * t + c[0, 1]) * t + p[0, 1]
         gap, w = nx * (Q[k, 0] - px) + ny * (Q[k, 1] - py), scale * weight[k]
         rest += w * gap * gap
-        u, v = w * gap * nx, w * gap * ny
+        slide = slip * (ny * (Q[k, 0] - px) - nx * (Q[k, 1] - py))
+        u, v = w * gap * nx + w * slide * ny, w * gap * ny - w * slide * nx
         z2, t2 = z * z, t * t
         B = (z2 * z, 3 * z2 * t, 3 * z * t2, t2 * t)
         for i in range(4):
             right[i, 0] += u * B[i]
             right[i, 1] += v * B[i]
         xx, xy, yy = w * nx * nx, w * nx * ny, w * ny * ny
+        xx, xy, yy = xx + slip * yy, xy - slip * xy, yy + slip * xx
         z4, t4 = z2 * z2, t2 * t2
         T = (z4 * z2, z4 * z * t, z4 * t2, z2 * z * t2 * t, z2 * t4, z * t4 * t, t4 * t2)
         for i in range(7):
@@ -91,7 +143,7 @@ def sample_form(
 @compiled
 def add_samples(
     p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, J: FloatArray, unit: float,
-    own: FloatArray,
+    own: FloatArray, slip: float = 0.0,
 ) -> float:  # fmt: skip
     """Add :func:`sample_form` in other unknowns.
 
@@ -103,7 +155,7 @@ def add_samples(
         The mean squared distance as it is.
     """
     u, form, image = J.shape[2], np.empty((8, 9)), np.empty(9)
-    rest = sample_form(p, c, Q, x, weight, unit, form)
+    rest = sample_form(p, c, Q, x, weight, unit, form, slip)
     for i in range(u):
         image[:] = 0.0
         for k in range(8):

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor
-from operator import itemgetter
 
 import numpy as np
 
@@ -86,9 +84,6 @@ class StoredGlyph:
         inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
         distance: the largest from the contours that were given, in font units, at the corners of the design space and
             in between. In CFF2 a bound; in glyf from dense samples.
-        shortest_leg: in glyf, the least distance of an implied point from its control points, in font units and at the
-            same places. Where it is 0 the curve has a corner there; where it is below a unit, renderers' single
-            precision turns it by some thousandths of a degree. None if there is no such point.
         bound: of the distance from the source: certified up to the contours that were given, and from there the
             distance of what is stored; None if no bounds were given.
         tally: points and kinks before and after; None likewise.
@@ -97,7 +92,6 @@ class StoredGlyph:
     contours: tuple[MasterContour, ...]
     inner: tuple[BoolArray, ...]
     distance: float
-    shortest_leg: float | None = None
     bound: float | None = None
     tally: Tally | None = None
 
@@ -109,13 +103,11 @@ def bound_of(glyph: StoredGlyph, redrawn: Redrawn) -> float:
     return max(redrawn.bounds, default=0.0) + glyph.distance if glyph.bound is None else glyph.bound
 
 
-def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: FloatArray | None = None) -> IntArray:
+def rounded_deltas(masters: Masters, points: FloatArray, parts: int) -> IntArray:
     """(K, N, 2) the default's points and a delta for each region, in steps of 1/``parts`` unit.
 
     Masters are rounded one after the other, each delta from what the regions before it leave. If no two regions
     overlap at each other's peaks, every master is within half a step of ``points`` (K, N, 2), whatever their number.
-    With a ``metric`` (K, 2N, 2N), the quadratic form of a master's error, it is that form which is kept small, and
-    points may be farther away, and no two in a row are rounded to one place: see :func:`nearest_whole`.
     """
     scalars, wanted = masters.at_peaks, points * float(parts)
     # Of the masters still to come: as they are before rounding.
@@ -127,57 +119,13 @@ def rounded_deltas(masters: Masters, points: FloatArray, parts: int, metric: Flo
         k, waiting = waiting[first], np.delete(waiting, first)
         acting = np.flatnonzero(others[k])
         left = wanted[k] - np.tensordot(scalars[k, acting], steps[acting], axes=1)
-        if metric is None:
-            steps[k] = rounded_whole(left)
-        else:
-            found = nearest_whole(left, metric[k])
-            steps[k] = left + kept_apart(found - left, wanted[k])
+        steps[k] = rounded_whole(left)
     return np.rint(steps).astype(np.int64)
-
-
-def kept_apart(moves: FloatArray, points: FloatArray) -> FloatArray:
-    """The moves (N, 2) that round points, changed by a step where they put a point onto the one before it.
-
-    Two control points in one place are a corner of a quadratic spline. Points that are in one place anyway stay so.
-    """
-    moves = moves.copy()
-    for i in range(len(points) - 1):
-        wanted = points[i + 1] - points[i]
-        if np.abs(wanted + moves[i + 1] - moves[i]).max() < 1e-3 < np.abs(wanted).max():
-            axis = int(np.abs(wanted).argmax())
-            moves[i + 1, axis] += np.sign(wanted[axis])
-    return moves
 
 
 def rounded_whole(values: FloatArray) -> FloatArray:
     """Whole numbers; values that are equal but for rounding errors are rounded alike."""
     return np.asarray(np.floor(np.round(values, 6) + 0.5))
-
-
-def nearest_whole(points: FloatArray, metric: FloatArray) -> FloatArray:
-    """Whole points (N, 2) near others, such that the quadratic form ``metric`` (2N, 2N) of the difference is small.
-
-    Babai's nearest plane: each coordinate is rounded to where, given those rounded before, the form is least; x or y
-    first, whichever ends lower.
-    """
-    found, form = [], metric.reshape(*points.shape, *points.shape)
-    for order in (1, -1):
-        wanted, own = points[:, ::order].ravel(), form[:, ::order, :, ::order].reshape(metric.shape)
-        whole = _nearest_plane(wanted, own)
-        off = whole - wanted
-        found.append((float(off @ own @ off), whole.reshape(points.shape)[:, ::order]))
-    return min(found, key=itemgetter(0))[1]
-
-
-def _nearest_plane(wanted: FloatArray, metric: FloatArray) -> FloatArray:
-    upper = np.linalg.cholesky(metric).T
-    upper = upper / np.diag(upper)[:, None]
-    found, off = wanted.tolist(), np.zeros(len(wanted))
-    for i in range(len(wanted) - 1, -1, -1):
-        value = found[i]
-        found[i] = floor(round(value + float(upper[i, i + 1 :] @ off[i + 1 :]), 6) + 0.5)
-        off[i] = value - found[i]
-    return np.array(found, dtype=np.float64)
 
 
 def as_drawn(masters: Masters, steps: IntArray, parts: int) -> FloatArray:

@@ -31,7 +31,7 @@ from .font_file import HINTS, become
 from .font_glyphs import Flavour
 from .master_deltas import Redrawn, bound_of, region_key
 from .new_variable_font import add_advances, opened
-from .quadratic_masters import unchanged
+from .quadratic_contours import unchanged
 from .variable_font import VariableSummary, to_variable_font
 
 log = logging.getLogger("glyphspline")

@@ -241,7 +241,7 @@ class CharStrings2:
         far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
         bounds = [bound + each for bound, each in zip(redrawn.bounds, far, strict=False)]
         return StoredGlyph(
-            stored, inner, max(far, default=0.0), None, max(bounds, default=0.0) if redrawn.bounds else None, tallied
+            stored, inner, max(far, default=0.0), max(bounds, default=0.0) if redrawn.bounds else None, tallied
         )
 
     def _place(self, regions: FloatArray, old: Any) -> tuple[int, list[int]]:

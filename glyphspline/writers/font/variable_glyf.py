@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
@@ -22,8 +22,8 @@ from ...outlines.masters import Masters
 from ...types import FloatArray
 from .font_glyphs import parts_of, simple_glyph, users
 from .master_deltas import Redrawn, StoredGlyph, check_steps, region_key
-from .quadratic_contours import PHANTOMS, Final, Own, Quadratic, own_contours
-from .stretches import NOTHING_NEW, settle, tally
+from .quadratic_contours import PHANTOMS, Final, Own, in_quadratics, own_contours
+from .stretches import NOTHING_NEW
 
 
 class Quadratics:
@@ -54,20 +54,12 @@ class Quadratics:
             if key and key not in known and moves:
                 raise GlyphsplineError("its variations have a region that its masters have not", glyph=name)
         owns, shift = self.own(name, masters)
-        count, tallied = range(len(redrawn.contours)), redrawn.tally
-        plans: Sequence[Quadratic | Final]
-        if tallied is not None:
-            plans = [Final(redrawn, c, owns, shift) for c in count]
-        else:
-            plans = fitted = [Quadratic(redrawn, c, owns, shift, tolerance) for c in count]
-            turning = settle(masters, fitted)
-        if redrawn.bounds:
-            if plans and all(plan.is_own for plan in plans):
-                raise GlyphsplineError(NOTHING_NEW, glyph=name)
-            if tallied is None:
-                before = len(getattr(old, "coordinates", ()))
-                after = sum(len(plan.points()[1]) for plan in plans)
-                tallied = tally((before, after), turning, redrawn.fewest)
+        compared, wanted = bool(redrawn.bounds), redrawn.bounds or (0.0,) * len(redrawn.contours)
+        if redrawn.tally is None:
+            redrawn = in_quadratics(redrawn, owns if compared else {}, shift, tolerance)
+        plans = [Final(redrawn, c, owns if compared else {}, shift) for c in range(len(redrawn.contours))]
+        if compared and plans and all(plan.is_own for plan in plans):
+            raise GlyphsplineError(NOTHING_NEW, glyph=name)
         drawn = [plan.points() for plan in plans]
         none = np.zeros((len(masters), 0, 2), dtype=np.int64)
         steps = np.concatenate([none, *[points for points, _ in drawn]], axis=1)
@@ -100,15 +92,14 @@ class Quadratics:
             if any(delta is not None for delta in moved):
                 kept.append(TupleVariation(variation.axes, moved))
         self._gvar.put(self._font.getGlyphID(name), kept)
-        shortest = min((plan.shortest for plan in plans), default=np.inf)
-        far, bounds = [plan.distance for plan in plans], [plan.bound for plan in plans]
+        far = max((now - before for now, before in zip(redrawn.bounds, wanted, strict=True)), default=0.0)
+        bound = max(redrawn.bounds, default=0.0)
         return StoredGlyph(
-            tuple(plan.stored() for plan in plans), tuple(plan.inside() for plan in plans), max(far, default=0.0),
-            shortest if np.isfinite(shortest) else None, max(bounds, default=0.0) if redrawn.bounds else None, tallied,
+            redrawn.contours, redrawn.inner, far, *((bound, redrawn.tally) if compared else (None, None))
         )  # fmt: skip
 
     def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
-        """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :class:`Quadratic`."""
+        """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :func:`in_quadratics`."""
         old, known = self._glyf[name], numbers_of(masters)
         keyed = [(region_key(self._gvar.region(each)), each) for each in self._gvar.variations(name)]
         tuples = [(known[key], variation) for key, variation in keyed if key in known]
