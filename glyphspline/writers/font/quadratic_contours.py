@@ -21,8 +21,8 @@ from ...outlines.outline import Contours
 from ...readers.pens import ContourPen
 from ...types import BoolArray, FloatArray, IntArray
 from .font_glyphs import FONTS, ROUNDING
-from .master_deltas import Redrawn, Tally, as_drawn, rounded_deltas
-from .stretches import NEAR, Turning, locations, vanished
+from .master_deltas import Redrawn, as_drawn, rounded_deltas
+from .stretches import NEAR, Turning, locations, tally, vanished
 
 PHANTOMS = 4
 """Points after those of the contours, which encode the advance and the bearings."""
@@ -165,14 +165,8 @@ def in_quadratics(
     many = sum(len(own.on) for own in before if own) or sum(len(c.points[0]) for c in masters.contours)
     return Redrawn(
         masters, tuple(contours), tuple(inner), tuple(bounds), numbers, new.fewest,
-        tallied(source, found, (many, sum(sizes))),
+        tally((many, sum(sizes)), (source, found), False),
     )  # fmt: skip
-
-
-def tallied(source: Turning, made: Turning, points: tuple[int, int]) -> Tally:
-    """A glyph's points and kinks."""
-    (kinks, between), (kinks_after, between_after) = source.kinks(), made.kinks()
-    return Tally(points, (kinks, kinks_after), (between, between_after))
 
 
 def unchanged(masters: Masters, contours: Sequence[MasterContour] | None = None) -> Redrawn:

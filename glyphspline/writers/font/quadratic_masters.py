@@ -13,8 +13,8 @@ from ...fitting.options import Options
 from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
 from .master_deltas import Tally
-from .quadratic_contours import in_quadratics, tallied, unchanged
-from .stretches import Turning
+from .quadratic_contours import in_quadratics, unchanged
+from .stretches import Turning, tally
 from .variable_glyf import Quadratics
 
 
@@ -49,7 +49,7 @@ def quadratic_masters(source: Font, masters: Masters, options: Options) -> Maste
     result = convert_masters(masters, options, fit=fit)
     curves = tuple(each.curve for each in result.contours)
     if (found := tallies.get(curves)) is None:
-        found = tallied(Turning(masters), Turning(replace(masters, contours=curves, repeats=None)), (0, 0))
+        found = tally((0, 0), (Turning(masters), Turning(replace(masters, contours=curves, repeats=None))), False)
     return replace(result, tally=np.array(astuple(found)))
 
 
