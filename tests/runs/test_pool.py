@@ -216,7 +216,7 @@ def is_there(process: int) -> bool:
 @pytest.mark.skipif(os.name == "nt", reason="processes that are spawned get the parent's path")
 def test_workers_with_other_code_are_an_error(tmp_path: Path) -> None:
     package = tmp_path / "elsewhere" / "glyphspline"
-    for file in ("__init__.py", "_version.py", "errors.py", "runs/__init__.py", "runs/pool.py"):
+    for file in ("__init__.py", "__init__.pyi", "_version.py", "errors.py", "runs/__init__.py", "runs/pool.py"):
         (package / file).parent.mkdir(parents=True, exist_ok=True)
         (package / file).write_bytes((ROOT / "glyphspline" / file).read_bytes())
     program = (
