@@ -35,8 +35,6 @@ class State:
     glyph: str
     location: tuple[tuple[str, float], ...]
     options: Options
-    sampling: Sampling
-    amount: float
     moved: Moved = ()
     text: str = ""
 
@@ -69,7 +67,7 @@ def read_state(given: Any, units_per_em: float) -> State:
     text = given.get("text") or ""
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
         raise GlyphsplineError(f"text is a string of at most {LONGEST_TEXT} characters")
-    return State(given["glyph"], place, options, sampling, amount, _moved(given.get("moved") or []), text)
+    return State(given["glyph"], place, options, _moved(given.get("moved") or []), text)
 
 
 def _number(given: Mapping[str, Any], key: str, default: float) -> float:

@@ -18,7 +18,7 @@ import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, astuple, replace
-from itertools import count, islice
+from itertools import count
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -28,7 +28,6 @@ from fontTools.designspaceLib import DesignSpaceDocument
 from fontTools.ufoLib import UFOWriter
 from fontTools.varLib.models import VariationModel
 
-from ..curves.cubics import turns
 from ..errors import GlyphsplineError, OutputError
 from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.extrema import with_extrema
@@ -36,8 +35,8 @@ from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import Contour
 from ..readers import Font, Source
 from ..types import MadeOnDemand
+from .back.nodes import as_number, nodes_of, smooth_ends
 from .font.master_deltas import Redrawn
-from .settings import NO_HANDLE, SMOOTH
 
 LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"
@@ -132,8 +131,8 @@ def _close(writer: UFOWriter, layers: Mapping[str, Any], order: Sequence[str]) -
 def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     """Write one glyph to the default layer and its polygons to the background."""
     outline, digits = result.outline, result.options.precision
-    curves = stored_curves(result)
-    lines = [Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64)) for c in result.contours if len(c.polygon)]
+    curves = [[curve] for curve in stored_curves(result)]
+    lines = [[Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64))] for c in result.contours if len(c.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(result.options.facts())}
     width, note = as_number(outline.advance), "\n".join(result.notes) or None
     glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
@@ -147,24 +146,13 @@ def stored_curves(result: GlyphResult) -> list[Contour]:
     return curves if result.options.is_for_fonts else [with_extrema(curve, em) for curve in curves]
 
 
-def draw(contours: Sequence[Contour], digits: int, pen: Any, flags: Sequence[Sequence[bool]] | None = None) -> None:
-    """Draw contours with a point pen, rounded; ``flags`` says which points are smooth, by default where they are."""
-    kinds = (None, "line", "qcurve", "curve")
-    for contour, smooth_points in zip(contours, flags or map(smooth_ends, contours), strict=True):
-        points = iter(contour.rounded(digits).points.tolist())
-        arriving = np.roll(contour.degrees, 1).tolist()
+def draw(contours: Iterable[Sequence[Contour]], digits: int, pen: Any, master: int = 0) -> None:
+    """Draw contours with a point pen in one of their masters, rounded."""
+    for masters in contours:
         pen.beginPath()
-        for before, degree, smooth in zip(arriving, contour.degrees.tolist(), smooth_points, strict=True):
-            pen.addPoint(tuple(map(as_number, next(points))), kinds[before], smooth)
-            for point in islice(points, degree - 1):
-                pen.addPoint(tuple(map(as_number, point)))
+        for node in nodes_of(masters[master].rounded(digits), smooth_ends(masters)):
+            pen.addPoint(node.at, node.kind, node.smooth)
         pen.endPath()
-
-
-def smooth_ends(contour: Contour) -> list[bool]:
-    """Whether the tangent is continuous at the beginning of each segment; False between two lines."""
-    curved = np.maximum(contour.degrees, np.roll(contour.degrees, 1)) > 1
-    return ((np.abs(turns(contour.cubics(), NO_HANDLE)) < SMOOTH) & curved).tolist()
 
 
 def _lib_entry(contour: ContourResult) -> dict[str, Any]:
@@ -179,11 +167,6 @@ def _lib_entry(contour: ContourResult) -> dict[str, Any]:
 def _plain(values: dict[str, Any]) -> dict[str, Any]:
     """The values that a property list can store: neither None nor infinite."""
     return {k: v for k, v in values.items() if not (v is None or (isinstance(v, float) and not math.isfinite(v)))}
-
-
-def as_number(value: float) -> float | int:
-    """A number as a property list has it: an int if it is whole."""
-    return int(value) if float(value).is_integer() else float(value)
 
 
 def unlike_regions(masters: Masters) -> str | None:
@@ -256,11 +239,9 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
 def _write_master(name: str, new: Redrawn, k: int, glyphs: Any) -> None:
     masters = new.masters
     in_all = [[Contour(points, contour.degrees) for points in contour.points] for contour in new.contours]
-    # The flag of a point is one for all masters, as it is in editors: smooth where it is in each.
-    smooth = [np.all([smooth_ends(master) for master in each], axis=0).tolist() for each in in_all]
     glyph = SimpleNamespace(width=as_number(float(masters.advances[k])), unicodes=list(masters.unicodes))
     # Decimals of coordinates: a handle of 10 units turns by less than 0.001 degrees.
-    glyphs.writeGlyph(name, glyph, lambda pen: draw([each[k] for each in in_all], 4, pen, smooth))
+    glyphs.writeGlyph(name, glyph, lambda pen: draw(in_all, 4, pen, k))
 
 
 def on_axis(axis: DesignAxis, x: float) -> float | int:

@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...curves.cubics import turns
 from ...outlines.outline import Contour
-from ..ufo_folder import as_number, smooth_ends
+from ..settings import NO_HANDLE, SMOOTH
 
 KINDS = (None, "line", "qcurve", "curve")
 """Kinds of points on the curve by the degree of the segment that ends there; None is a control point."""
@@ -56,15 +57,14 @@ def replaced(
     first = next((node.at for node in old[0] if node.kind), None)
     starts = rounded[0].points[rounded[0].offsets]
     shift = 0 if first is None else int(np.hypot(*(starts - first).T).argmin())
-    # The flag of a point is one for all masters, as it is in editors: smooth where it is in each.
-    smooth = np.all([smooth_ends(contour) for contour in rounded], axis=0)
+    smooth = smooth_ends(rounded)
     if keeps_flags:
         flags = {node.at: node.smooth for node in old[0] if node.kind}
         places = rounded[0].points[rounded[0].offsets].tolist()
-        smooth = [flags.get((x, y), bool(flag)) for (x, y), flag in zip(places, smooth, strict=True)]
-    made = [_nodes(contour, smooth, shift) for contour in rounded]
+        smooth = [flags.get((x, y), flag) for (x, y), flag in zip(places, smooth, strict=True)]
+    made = [nodes_of(contour, smooth, shift) for contour in rounded]
     before = [_from_the_curve(nodes) for nodes in old]
-    as_given = [_nodes(contour, smooth, shift) for contour in new]  # what stays may have more decimals
+    as_given = [nodes_of(contour, smooth, shift) for contour in new]  # what stays may have more decimals
     if any(
         [[node[:2] for node in nodes] for nodes in each] == [[node[:2] for node in nodes] for nodes in before]
         for each in (made, as_given)
@@ -123,12 +123,29 @@ def moved(
     return found
 
 
-def _nodes(contour: Contour, smooth: Sequence[bool], shift: int) -> list[Node]:
+def as_number(value: float) -> float | int:
+    """A number as a property list has it: an int if it is whole."""
+    return int(value) if float(value).is_integer() else float(value)
+
+
+def smooth_ends(masters: Sequence[Contour]) -> list[bool]:
+    """Whether the tangent is continuous at the beginning of each segment, in all masters; False between two lines.
+
+    The flag of a point is one for all masters, as it is in editors.
+    """
+    degrees = masters[0].degrees
+    smooth = np.maximum(degrees, np.roll(degrees, 1)) > 1
+    for contour in masters:
+        smooth &= np.abs(turns(contour.cubics(), NO_HANDLE)) < SMOOTH
+    return smooth.tolist()
+
+
+def nodes_of(contour: Contour, smooth: Sequence[bool], shift: int = 0) -> list[Node]:
     """The nodes of a contour that begins with its segment number ``shift``."""
     points, nodes = iter([(as_number(x), as_number(y)) for x, y in contour.points.tolist()]), list[list[Node]]()
     arriving = np.roll(contour.degrees, 1).tolist()
     for before, degree, flag in zip(arriving, contour.degrees.tolist(), smooth, strict=True):
-        own = [Node(next(points), KINDS[before], bool(flag))]
+        own = [Node(next(points), KINDS[before], flag)]
         nodes.append(own + [Node(point, None) for point in islice(points, degree - 1)])
     return [node for part in (*nodes[shift:], *nodes[:shift]) for node in part]
 
