@@ -31,7 +31,7 @@ from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from .engine import Job, Observer, Part, run
 from .rows import Rows, remove_unfinished
-from .schedule import Head, Side
+from .schedule import Head
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
 from .summary import MastersSummary, Summary
 
@@ -98,12 +98,11 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True)
 class Output:
-    """What a worker needs to convert glyphs and write their files: the source, the folder, and how.
+    """What a worker needs to write the files of glyphs: the folder, and how.
 
-    ``font``: family and style, for rows.
+    ``curvature_scale``: of all maps; None: each glyph has its own. ``font``: family and style, for rows.
     """
 
-    side: Side
     out: Path
     spec: RunSpec
     curvature_scale: float | None = None

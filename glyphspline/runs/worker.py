@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers.source import OutlineOrError
 from ..report import FOLDER as GALLERY
-from ..report.data import DECIMALS, glyph_text, plain, row_of
+from ..report.data import DECIMALS, FULL, along_axes, encoded, glyph_text, plain, row_of
 from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
 from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data
@@ -27,6 +27,9 @@ from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
 from .spec import MAPS, PARQUET, POLYGON, RESULTS, Limits, suffix_of
+
+if TYPE_CHECKING:
+    from ..fitting.convert_masters import MastersResult
 
 # The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
@@ -75,11 +78,17 @@ def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Out
     glyphs, waiting = iter(drawn(job, good)), rows_of(job, good)
     finished: list[Done | GlyphsplineError] = []
     for task, result in zip(tasks, results, strict=True):
-        if isinstance(result, GlyphResult):
-            finished.append(write_files(job, task, next(glyphs))._replace(rows=waiting))
-            waiting = b""
-        else:
+        if not isinstance(result, GlyphResult):
             finished.append(result)
+            continue
+        glyph = next(glyphs)
+        deviations = [value for contour in glyph.measures or () if (value := contour["deviation"]) is not None]
+        notes = tuple(dict.fromkeys([*result.outline.notes, *result.notes]))
+        facts = {
+            "deviation": max(deviations, default=None), "contours": glyph.measures, "notes": notes, "error": None
+        }  # fmt: skip
+        finished.append(write_files(job, task, glyph, facts)._replace(rows=waiting))
+        waiting = b""
     return finished
 
 
@@ -99,6 +108,7 @@ class Glyph(NamedTuple):
     Attributes:
         path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
         measures: of the contours; None if nothing is fitted.
+        masters: the result in all masters, of which ``result`` is the default; None of a glyph by itself.
     """
 
     result: GlyphResult
@@ -106,6 +116,7 @@ class Glyph(NamedTuple):
     source: PathData | None
     polygons: PolygonData | None
     measures: list[dict[str, Any]] | None
+    masters: MastersResult | None = None
 
 
 def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
@@ -139,19 +150,17 @@ def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[di
     return [entries[a:b] for a, b in pairwise(offsets.tolist())]
 
 
-def write_files(job: Output, task: Task, glyph: Glyph) -> Done:
-    """Write a glyph's files, none if it is empty."""
-    result, formats = glyph.result, job.spec.folders
-    empty = not result.contours
-    files = {} if empty else {name: f"{name}/{task.stem}{suffix_of(name)}" for name in formats}
+def write_files(
+    job: Output, task: Task, glyph: Glyph, facts: Mapping[str, Any], encode: Callable[[Any], str] = encoded
+) -> Done:
+    """Write a glyph's files; of an empty one none, or the result in all masters. ``facts``: for the manifest."""
+    empty = not glyph.result.contours
+    names = ([] if glyph.masters is None else [RESULTS]) if empty else job.spec.folders
+    files = {name: f"{name}/{task.stem}{suffix_of(name)}" for name in names}
     sizes = [write_whole(f"{job.out}/{path}", written(name, job, glyph, files)) for name, path in files.items()]
-    notes = tuple(dict.fromkeys([*result.outline.notes, *result.notes]))
-    deviations = [value for contour in glyph.measures or () if (value := contour["deviation"]) is not None]
-    entry = {
-        "advance": plain(result.outline.advance), "status": "empty" if empty else "ok", "files": files,
-        "deviation": max(deviations, default=None), "contours": glyph.measures, "notes": notes, "error": None,
-    }  # fmt: skip
-    return done(task, entry, sizes, row_of if GALLERY in formats else None)
+    status, advance = "empty" if empty else "ok", plain(glyph.result.outline.advance)
+    entry = {"advance": advance, "status": status, "files": files, **facts}
+    return done(task, entry, sizes, row_of if GALLERY in job.spec.folders else None, encode)
 
 
 def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str | bytes:
@@ -161,7 +170,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
     """
     spec, result, source, polygons = job.spec, glyph.result, glyph.source, glyph.polygons
     if name == RESULTS:
-        return to_text(result)
+        return to_text(glyph.masters or result)
     if name in (POLYGON, GALLERY):
         assert source is not None
         assert polygons is not None
@@ -169,12 +178,14 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
             return polygon_document(result, source, polygons)
         polygon, control = (part.text for part in polygons)
         shown = {"source": source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
-        return glyph_text(shown, files, glyph.measures or ())
+        axes = along_axes(glyph.masters) if glyph.masters else None
+        return glyph_text(shown, files, glyph.measures or (), axes)
     path, box = {"path": glyph.path}, {"ink": glyph.path.box}
     shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": box, "pdf": box}
     known = shared.get(name, {})
     if name in MAPS:
-        known = {"maps": spec.maps, "scale": job.curvature_scale}
+        em = result.outline.metrics.units_per_em
+        known = {"maps": spec.maps, "scale": job.curvature_scale or spec.maps.scale_for(em) or FULL / em}
         known |= path if name == "curvature" and spec.maps.comb != "source" else {}
     settings = spec.settings if known else spec.settings.scaled(result.outline.metrics)
     write: Any = format_named(name).write

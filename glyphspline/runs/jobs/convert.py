@@ -52,8 +52,11 @@ SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
 
 
+@dataclass(frozen=True, kw_only=True)
 class ConvertJob(Output, Job[Task, list[Done]]):
     """Glyphs converted, drawn and written to files, each with a line of the manifest."""
+
+    side: Side
 
     budget = 40_000
     """Segments and vertices converted at once: some 40 glyphs of a CJK face."""
@@ -157,7 +160,7 @@ def convert_font(
         with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
             tasks = tasks_of(source, glyphs, spec.names)
             left = [task for task in tasks if task.gid not in finished]
-            job = ConvertJob(side_of(source), out.absolute(), spec, font=(source.family, source.style))
+            job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), side=side_of(source))
             job = with_scale(job, source, glyphs, tasks, pool)
             for part in recorded(job, left, pool, record, out, observer, rows):
                 for glyph in part.result:

@@ -27,16 +27,15 @@ from ...readers import Font, Source
 from ...readers.designspace import Designspace, GlyphsFile
 from ...readers.single_fonts import axis_of
 from ...report import FOLDER as GALLERY
-from ...report.data import FULL, along_axes, glyph_text, plain
 from ...types import MadeOnDemand, counted, listed, rounded_up
 from ...writers.font.font_glyphs import SHARE, Flavour
 from ...writers.font.master_deltas import Redrawn, StoredGlyph, Tally, bound_of
 from ...writers.formats import OURS
 from ..engine import Job, Observer, reason
-from ..folder import Done, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
+from ..folder import Done, Output, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
 from ..result_text import stored
 from ..schedule import Place, place_of, sources
-from ..spec import MAPS, RESULTS, RunSpec, describe, suffix_of, write_run
+from ..spec import RESULTS, RunSpec, describe, write_run
 from ..summary import NAMED, MastersSummary
 from .convert import back_to_source, check_back, font_files, tasks_of
 
@@ -53,22 +52,22 @@ UNMATCHED = "unmatched"
 """The folder of pictures of glyphs whose outlines in single fonts cannot be matched."""
 
 
-@dataclass(frozen=True)
-class MastersJob(Job[Task, list[Done]]):
-    """What a worker needs: the font, or the single fonts and their axis; the folder of the run; the options that glyphs
-    are converted with, and what is written."""
+@dataclass(frozen=True, kw_only=True)
+class MastersJob(Output, Job[Task, list[Done]]):
+    """Glyphs of a font, or of single fonts and their axis, converted in all masters and written to files."""
 
     places: tuple[Place, ...]
     axis: str | None
-    out: Path
     options: Options
-    spec: RunSpec
 
     budget = 1.0
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
-        """Convert one glyph, store its result and write its drawings."""
+        """Convert one glyph, store its result and write its drawings: those of the default master."""
         from ...fitting.convert_masters import convert_masters
+        from ...writers.svg.document import PolygonData, source_data
+        from ...writers.svg.path_data import PathData, curves_data
+        from ..worker import Glyph, write_files
 
         (task,) = tasks
         masters = self._masters(task)
@@ -80,37 +79,15 @@ class MastersJob(Job[Task, list[Done]]):
             result = quadratic_masters(font, masters, self.options)
         else:
             result = convert_masters(masters, self.options)
-        names = self.spec.folders if result.contours else (RESULTS,)
-        files = {name: f"{name}/{task.stem}{suffix_of(name)}" for name in names}
-        entry = {
-            "advance": plain(float(result.masters.advances[0])), "status": "ok" if result.contours else "empty",
-            "files": files, "masters": len(result.masters),
-            "contours": [_measures(contour) for contour in result.contours], "notes": list(result.notes),
+        glyph, nothing = default_glyph(result), PathData("", None)
+        (source,), (path,) = source_data([glyph]), curves_data(glyph.arrays.curves, self.options.precision)
+        contours = [_measures(contour) for contour in result.contours]
+        facts = {
+            "masters": len(result.masters), "contours": contours, "notes": list(result.notes),
             "stored": None, "kept": None, "error": None,
         }  # fmt: skip
-        sizes = [write_whole(f"{self.out}/{path}", self._file(name, result, entry)) for name, path in files.items()]
-        return [done(task, entry, sizes, encode=_encoded)]
-
-    def _file(self, name: str, result: MastersResult, entry: Mapping[str, Any]) -> str | bytes:
-        """A glyph's file of a format: its result, its data on the page, or a drawing of its default master."""
-        from ..result_text import to_text
-
-        if name == RESULTS:
-            return to_text(result)
-        glyph, settings = default_glyph(result), self.spec.settings
-        if name != GALLERY:
-            em, maps = result.masters.metrics.units_per_em, self.spec.maps
-            known = {"maps": maps, "scale": maps.scale_for(em) or FULL / em} if name in MAPS else {}
-            write: Any = OURS[name].write
-            made: str | bytes = write(glyph, settings.scaled(result.masters.metrics), **known)
-            return made
-        from ...writers.svg.document import source_data
-        from ...writers.svg.path_data import curves_data
-
-        (source,) = source_data([glyph])
-        (curve,) = curves_data(glyph.arrays.curves, self.options.precision)
-        shown = {"source": source.text, "result": curve.text, "polygon": "", "control": ""}
-        return glyph_text(shown, entry["files"], entry["contours"], along_axes(result))
+        drawn = Glyph(glyph, path, source, PolygonData(nothing, nothing), contours, result)
+        return [write_files(self, task, drawn, facts, _encoded)]
 
     def failed(self, task: Task, error: Exception) -> list[Done]:
         """The line of a glyph that has no result; it names the font that is at fault, if that is not the first."""
@@ -210,7 +187,7 @@ def convert_font_masters(
         options = spec.options
         if "ttf" in spec.formats and not in_quadratics(spec):
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
-        job = MastersJob(tuple(map(place_of, sources)), axis, out.absolute(), options, spec)
+        job = MastersJob(out.absolute(), spec, places=tuple(map(place_of, sources)), axis=axis, options=options)
         finished = record.finished()
         left = [task for task in tasks_of(first, wanted, spec.names) if task.gid not in finished]
         for _ in recorded(job, left, executor, record, out, observer):
@@ -311,6 +288,29 @@ def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> st
     return remark
 
 
+def _font(
+    sources: Sequence[Source], redrawn: Mapping[str, Redrawn], flavour: Flavour, spec: RunSpec, axis: str | None
+) -> tuple[bytes, VariableSummary]:
+    """A variable font of the new contours: the source's own, with outlines of its kind or the other, or a new one."""
+    from ...writers.font.new_variable_font import to_new_variable_font
+    from ...writers.font.other_outlines import to_other_outlines
+    from ...writers.font.variable_font import flavour_of, to_variable_font
+
+    source = sources[0]
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+    rest = (1 - SHARE) * tolerance
+    family = spec.family_of(source)
+    if axis is not None:
+        return to_new_variable_font(sources, axis, redrawn, tolerance=rest, family=family, with_contours=False)
+    assert isinstance(source, Font)
+    how: dict[str, Any] = {
+        "tolerance": tolerance, "family": None if spec.keep_name else family, "with_contours": False
+    }  # fmt: skip
+    if flavour == flavour_of(source):
+        return to_variable_font(source, redrawn, flavour, **how)
+    return to_other_outlines(source, redrawn, flavour, rest=rest, **how)
+
+
 def _write_fonts(
     sources: Sequence[Source],
     redrawn: Mapping[str, Redrawn],
@@ -326,30 +326,7 @@ def _write_fonts(
     for flavour in _flavours(spec):
         path = paths[flavour]
         with writing(path):
-            if axis is None:
-                from ...writers.font.variable_font import flavour_of, to_variable_font
-
-                assert isinstance(source, Font)
-                family = None if spec.keep_name else spec.family_of(source)
-                if flavour == flavour_of(source):
-                    data, facts = to_variable_font(
-                        source, redrawn, flavour, tolerance=tolerance, family=family, with_contours=False
-                    )
-                else:
-                    from ...writers.font.other_outlines import to_other_outlines
-
-                    data, facts = to_other_outlines(
-                        source, redrawn, flavour, tolerance=tolerance, rest=(1 - SHARE) * tolerance, family=family,
-                        with_contours=False,
-                    )  # fmt: skip
-            else:
-                from ...writers.font.new_variable_font import to_new_variable_font
-
-                family = spec.family_of(source)
-                rest = (1 - SHARE) * tolerance
-                data, facts = to_new_variable_font(
-                    sources, axis, redrawn, tolerance=rest, family=family, with_contours=False
-                )
+            data, facts = _font(sources, redrawn, flavour, spec, axis)
             write_whole(str(path), data, durable=True)
         stored |= {name: _stored(glyph, redrawn, name, tolerance) for name, glyph in facts.glyphs.items()}
         summary.remarks.append(_replaced(path, facts, [each["bound"] for each in stored.values()]))
