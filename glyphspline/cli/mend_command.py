@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..checks.kinds import KINDS, MENDED, MENDED_UNASKED
+from ..checks.kinds import MENDED, MENDED_UNASKED
 from ..errors import OptionError
 from ..fields import WRITTEN, About
+from ..files import make_folder, write_made
 from ..runs.spec import RunSpec
 from ..types import counted, rounded_up, shortened
 from . import arguments as opt
@@ -90,7 +91,10 @@ def mend(
                     layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
                 ))  # fmt: skip
     if report.html is not None:
-        write_page(report.html, found[0], dry_run)
+        from ..report.mending_page import mending_page
+
+        one, facts = found[0], [next(lines(found[0], dry_run))]
+        write_made(report.html, mending_page(Path(one.source).name, facts, one.changes, one.drawn).encode())
     if run.as_json:
         print_json([one.facts() for one in found])
     for one in found:
@@ -102,22 +106,8 @@ def mend(
     return undone or any(one.left or one.failed for one in found)
 
 
-def write_page(path: Path, found: MendedSource, dry: bool) -> None:
-    """Draw what moved.
-
-    Raises:
-        OutputError: the file cannot be written.
-    """
-    from ..files import write_made
-    from ..report.mending_page import mending_page
-
-    page = mending_page(Path(found.source).name, [next(lines(found, dry))], found.changes, found.drawn)
-    write_made(path, page.encode())
-
-
 def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
     """Where the copy of a source goes: a designspace's is a folder of its files, as its UFOs lie beside it."""
-    from ..files import make_folder
     from ..readers.designspace import Designspace, GlyphsFile
 
     make_folder(out)
@@ -127,13 +117,12 @@ def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
 
 def table(changes: Sequence[Change]) -> str:
     """What moved, a finding a line."""
-    from ..report.mending_page import moved_words
+    from ..report.mending_page import after_words, before_words, moved_words
 
     rows = [
         [
-            change.glyph, change.kind, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point), value(change),
-            "" if change.after is None else f"{change.after:.2f}°",
-            moved_words(change),
+            change.glyph, change.kind, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point),
+            before_words(change), after_words(change), moved_words(change),
             f"{rounded_up(change.distance or 0.0, 3):g}",
         ]
         for change in changes
@@ -142,16 +131,8 @@ def table(changes: Sequence[Change]) -> str:
     return plain(headings, rows, numbers=headings[2:])
 
 
-def value(change: Change) -> str:
-    """How much was found, with its unit."""
-    from ..checks.finding import with_unit
-
-    return with_unit(change.before, next(kind.unit for kind in KINDS if kind.name == change.kind))
-
-
 def lines(found: MendedSource, dry: bool) -> Iterator[str]:
     """What the table does not say."""
-
     mended, left = found.mended, found.left
     verb = "would change" if dry else "changed"
     yield (
@@ -167,7 +148,7 @@ def lines(found: MendedSource, dry: bool) -> Iterator[str]:
 
 def reason(change: Change) -> str:
     """Where a finding is that is left, and why."""
-    from ..report.mending_page import left_words
+    from ..report.mending_page import before_words, left_words
 
     place = "contour {}, {:.0f} {:.0f}".format(change.contour, *change.point)
-    return f"{change.glyph}, {place}, {change.kind} of {value(change)}: {left_words(change)}"
+    return f"{change.glyph}, {place}, {change.kind} of {before_words(change)}: {left_words(change)}"

@@ -55,8 +55,8 @@ def mending_page(
             number, worst = names[change.glyph], worst_place(old, change, places)
         rows.append([
             change.glyph, kinds.index(change.kind), change.contour, change.segment,
-            *[round(value, 2) for value in change.point], with_unit(change.before, UNITS[change.kind]),
-            "" if change.after is None else f"{change.after:.2f}°", moved_words(change),
+            *[round(value, 2) for value in change.point],
+            before_words(change), after_words(change), moved_words(change),
             "" if change.distance is None else f"{rounded_up(change.distance, 3):g}",
             left_words(change), number, *worst,
         ])  # fmt: skip
@@ -117,6 +117,16 @@ def worst_place(old: Masters, change: Change, places: Sequence[FloatArray]) -> t
             if turns.max() > most:
                 worst, most = (a, int(turns.argmax())), float(turns.max())
     return worst
+
+
+def before_words(change: Change) -> str:
+    """How much was found, with its unit."""
+    return with_unit(change.before, UNITS[change.kind])
+
+
+def after_words(change: Change) -> str:
+    """By how much a joint turns now, where that is known."""
+    return "" if change.after is None else f"{change.after:.2f}°"
 
 
 def moved_words(change: Change) -> str:
