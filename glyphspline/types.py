@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Context, Decimal
-from typing import TYPE_CHECKING, Any, Generic, Literal, TypeAlias, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeAlias, TypeVar, overload
 
 if TYPE_CHECKING:
     import numpy as np
@@ -21,6 +21,15 @@ Names: TypeAlias = Literal["glyph", "unicode", "gid", "char"]
 
 INCHES = {"mm": 1 / 25.4, "cm": 1 / 2.54, "in": 1.0, "pt": 1 / 72, "pc": 1 / 6, "px": 1 / 96}
 """Units of lengths in CSS and SVG, in inches."""
+
+
+class Head(NamedTuple):
+    """A glyph without its contours: name, glyph index and code points in ascending order."""
+
+    name: str
+    gid: int
+    unicodes: tuple[int, ...] = ()
+
 
 T = TypeVar("T", covariant=True)
 Value = TypeVar("Value")

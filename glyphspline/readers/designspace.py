@@ -25,8 +25,9 @@ from ..errors import FontError, GlyphsplineError
 from ..extras import need
 from ..outlines.masters import DesignAxis, Masters, Region, distinct_regions, stacked
 from ..outlines.outline import Outline
+from ..types import Head
 from .pens import MAX_COMPONENTS, ContourPen, enter_component
-from .source import Head, Location, Source, parsed
+from .source import Location, Source, parsed
 from .ufo import Drawing, Ufo
 
 

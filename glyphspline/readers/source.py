@@ -12,12 +12,12 @@ from contextlib import contextmanager
 from functools import cached_property, partial
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal, NamedTuple, TypeAlias, TypeVar, overload
+from typing import Any, Literal, TypeAlias, TypeVar, overload
 
 from ..errors import FontError, GlyphsplineError, words_of
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import FontMetrics, Outline
-from ..types import counted
+from ..types import Head, counted
 from .selection import Request, Selection, select
 
 OutlineOrError: TypeAlias = Outline | GlyphsplineError
@@ -29,14 +29,6 @@ Read = TypeVar("Read")
 Own = TypeVar("Own", bound="Source")
 
 log = logging.getLogger(__name__)
-
-
-class Head(NamedTuple):
-    """A glyph without its contours: name, glyph index and code points in ascending order."""
-
-    name: str
-    gid: int
-    unicodes: tuple[int, ...]
 
 
 class Source(ABC):

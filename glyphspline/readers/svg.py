@@ -21,9 +21,9 @@ from fontTools import agl
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
-from ..types import INCHES, FloatArray
+from ..types import INCHES, FloatArray, Head
 from .pens import ContourPen
-from .source import Head, Source, first_claims, opening, parsed
+from .source import Source, first_claims, opening, parsed
 
 LARGEST_FILE = 1 << 26
 """Limit of bytes of one drawing."""

@@ -16,8 +16,9 @@ from fontTools.ufoLib.glifLib import GlyphSet
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
+from ..types import Head
 from .pens import ContourPen
-from .source import Head, Source, first_claims, parsed, reason
+from .source import Source, first_claims, parsed, reason
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
 

@@ -29,9 +29,9 @@ from ..errors import OutputError, words_of
 from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, writing
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
+from ..types import Head
 from .engine import Job, Observer, Part, run
 from .rows import Rows, remove_unfinished
-from .schedule import Head
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
 from .summary import MastersSummary, Summary
 
@@ -83,17 +83,10 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 class Task(NamedTuple):
-    """One glyph of a run: its index, name, file name without suffix, and code points."""
+    """One glyph of a run, and the name of its files without suffix."""
 
-    gid: int
-    name: str
+    head: Head
     stem: str
-    unicodes: tuple[int, ...]
-
-    @property
-    def head(self) -> Head:
-        """What its outline is read by."""
-        return self.name, self.gid, self.unicodes
 
 
 @dataclass(frozen=True)
@@ -137,9 +130,10 @@ def done(
     Args:
         entry: with status and files. sizes: of the files. row: makes the gallery's row of the whole line.
     """
-    whole = {"glyph": task.name, "gid": task.gid, "unicodes": [f"U+{code:04X}" for code in task.unicodes], **entry}
+    name, gid, unicodes = task.head
+    whole = {"glyph": name, "gid": gid, "unicodes": [f"U+{code:04X}" for code in unicodes], **entry}
     line = f"{','.join(map(str, sizes))}\t{encode(whole)}\n".encode()
-    return Done(task.gid, task.name, entry["status"], line, row(whole) if row else "")
+    return Done(gid, name, entry["status"], line, row(whole) if row else "")
 
 
 @dataclass

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..fitting.options import Options
+from ..types import Head
 from .pool import WorkerPool, code_for
 from .spec import Limits, needs_fit
 
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
 
 Place = tuple[Path, int, tuple[tuple[str, float], ...]]
 """A file, a face and a location."""
-
-Head = tuple[str, int, tuple[int, ...]]
-"""Name, glyph index and code points of a glyph."""
 
 Read = Callable[[Sequence[Head]], "Sequence[OutlineOrError]"]
 """Reads outlines: of each glyph its outline, or its error."""
@@ -65,7 +63,7 @@ def readers(*sides: Side) -> list[Read]:
 def _reader(place: Place, metrics: FontMetrics | None) -> Read:
     if metrics is None:
         (source,) = sources(place)
-        return lambda heads: source.outlines([gid for _, gid, _ in heads], errors="return")
+        return lambda heads: source.outlines([head.gid for head in heads], errors="return")
     from ..readers.opentype.bulk import BulkReader
 
     bulk = BulkReader(*place)
@@ -74,7 +72,7 @@ def _reader(place: Place, metrics: FontMetrics | None) -> Read:
 
 def heads_of(source: Source) -> dict[str, Head]:
     """The glyphs of a source by their names, in glyph index order."""
-    return {name: (name, gid, source.unicodes.get(name, ())) for name, gid in source.gids.items()}
+    return {name: Head(name, gid, source.unicodes.get(name, ())) for name, gid in source.gids.items()}
 
 
 class InProcess(Executor):

@@ -26,7 +26,7 @@ from glyphspline.readers import Font, open_font, open_source
 from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader
 from glyphspline.readers.opentype.routes import HarfBuzz
-from glyphspline.readers.source import Head
+from glyphspline.types import Head
 from tests.places import FACES, FONTS
 from tests.readers.test_broken_fonts import with_components
 

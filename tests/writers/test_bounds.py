@@ -19,8 +19,7 @@ import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.curves.integrals import area
 from glyphspline.readers.pens import ContourPen
-from glyphspline.readers.source import Head
-from glyphspline.types import rounded_up
+from glyphspline.types import Head, rounded_up
 from scripts.paper.measures import shape
 from tests.places import GYOSHO as FONT
 from tests.topology import path_contours, svg_contours

@@ -15,7 +15,7 @@ from functools import cache, cached_property
 from itertools import pairwise
 from pathlib import Path
 from threading import Lock
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 import uharfbuzz as hb
@@ -25,9 +25,9 @@ from ...compiled import callback, compiled
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...outlines.segments import keep_lasting
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import BoolArray, FloatArray, Head, IntArray
 from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, notes_of
-from ..source import Head, OutlineOrError, attempt, opening
+from ..source import OutlineOrError, attempt, opening
 from .routes import HarfBuzz
 
 USED, CAPACITY, FIRST = 0, 1, 2
@@ -38,9 +38,6 @@ BUFFER_SIZE = 1 << 18
 
 LONGEST = 7
 """Numbers of the longest operation, a cubic."""
-
-HeadLike: TypeAlias = tuple[str, int, tuple[int, ...]]
-"""A :class:`Head`, or the plain tuple that a task holds."""
 
 UNUSUAL, UNCOUNTED = -1, -2
 """In place of a number of contours: fontTools has to read the glyph; the number is unknown."""
@@ -255,7 +252,7 @@ class BulkReader:
         self._pointer = _capsule(self._buffer.ctypes.data)
         self._lock = Lock()
 
-    def outlines(self, heads: Sequence[HeadLike], metrics: FontMetrics) -> list[OutlineOrError]:
+    def outlines(self, heads: Sequence[Head], metrics: FontMetrics) -> list[OutlineOrError]:
         """Read glyphs; the result has an error in place of each broken glyph.
 
         Args:
@@ -266,17 +263,18 @@ class BulkReader:
         while len(found) < len(heads):
             left = heads[len(found) :]
             with self._lock:
-                places, expected = self._draw([gid for _, gid, _ in left])
+                places, expected = self._draw([head.gid for head in left])
                 points, degrees, offsets, starts, repeats, left_out, before, unusual, snapped = _contours(
                     self._buffer, places, expected
                 )
             glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
-            for g, ((name, gid, unicodes), odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
+            for g, (head, odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
                 if odd:
-                    found.append(self.draw_again(Head(name, gid, unicodes), metrics, int(expected[g])))
+                    found.append(self.draw_again(head, metrics, int(expected[g])))
                     continue
                 own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
                 contours, notes = Contours(own, repeats[m:n]), notes_of(left_out[a:b].tolist()) if b > a else ()
+                name, gid, unicodes = head
                 made = Outline.trusted(
                     name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=contours,
                     metrics=metrics, notes=notes, snapped=moved,

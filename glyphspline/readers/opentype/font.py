@@ -19,7 +19,8 @@ from fontTools.ttLib.sfnt import readTTCHeader
 from ...errors import FontError
 from ...outlines.masters import DesignAxis, Masters
 from ...outlines.outline import FontMetrics
-from ..source import Head, Location, OutlineOrError, Source, opening
+from ...types import Head
+from ..source import Location, OutlineOrError, Source, opening
 from .containers import FORMATS, unpacked
 from .routes import HarfBuzz
 

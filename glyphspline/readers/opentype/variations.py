@@ -21,9 +21,8 @@ from fontTools.varLib.iup import iup_delta
 from ...errors import GlyphsplineError
 from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, quadratics, region_scalars, stacked
 from ...outlines.outline import FontMetrics
-from ...types import BoolArray, FloatArray
+from ...types import BoolArray, FloatArray, Head
 from ..pens import MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, enter_component
-from ..source import Head
 from .routes import check_variations
 
 MOST_MASTERS = 500

@@ -25,10 +25,10 @@ from ...errors import FontError, GlyphsplineError
 from ...readers import Source
 from ...readers.source import Location
 from ...report.findings_page import home_of
-from ...types import IntArray
+from ...types import Head, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
-from ..schedule import Head, Side, readers, side_of, sources, workers
+from ..schedule import Side, readers, side_of, sources, workers
 from ..shapes import Shapes
 from ..spec import Limits
 
@@ -244,7 +244,7 @@ def check_font(
     index = source.gids
     if unknown := [name for name in names if name not in index]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
-    tasks: list[Head] = [(name, index[name], ()) for name in sorted({*names}, key=index.__getitem__)]
+    tasks = [Head(name, index[name]) for name in sorted({*names}, key=index.__getitem__)]
     job = CheckJob(side_of(source), asked.thresholds, asked.kinds, source.outer)
     if chosen:
         job = AxesJob(job.side, job.thresholds, job.kinds, job.outer, chosen, asked.steps, asked.joints)

@@ -159,7 +159,7 @@ def convert_font(
         kinds = kinds_for(spec.options, spec.formats)
         with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
             tasks = tasks_of(source, glyphs, spec.names)
-            left = [task for task in tasks if task.gid not in finished]
+            left = [task for task in tasks if task.head.gid not in finished]
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), side=side_of(source))
             job = with_scale(job, source, glyphs, tasks, pool)
             for part in recorded(job, left, pool, record, out, observer, rows):
@@ -198,7 +198,7 @@ def require_libraries(spec: RunSpec) -> None:
 def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
     """A task for each glyph, in glyph index order."""
     stems, chosen = file_names(source.glyph_names, names, source.cmap), {*glyphs}
-    return [Task(gid, name, stems[gid], codes) for name, gid, codes in heads_of(source).values() if name in chosen]
+    return [Task(head, stems[head.gid]) for name, head in heads_of(source).items() if name in chosen]
 
 
 def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:

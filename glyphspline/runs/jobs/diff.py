@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 from ...comparing.difference import PER_EM, Difference
 from ...errors import GlyphsplineError, is_positive, require
 from ...readers import Source
+from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
-from ..schedule import Head, Side, heads_of, readers, side_of, workers
+from ..schedule import Side, heads_of, readers, side_of, workers
 from ..spec import Limits
 
 if TYPE_CHECKING:

@@ -105,8 +105,8 @@ class MastersJob(Output, Job[Task, list[Done]]):
 
         fonts = sources(*self.places)
         if self.axis is None:
-            return fonts[0].masters(task.name)
-        found = next(iter(masters_of_fonts(fonts, self.axis, [task.name])))
+            return fonts[0].masters(task.head.name)
+        found = next(iter(masters_of_fonts(fonts, self.axis, [task.head.name])))
         if isinstance(found, Unmatched):
             from ...writers.svg.unmatched import to_unmatched_svg
 
@@ -189,7 +189,7 @@ def convert_font_masters(
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         job = MastersJob(out.absolute(), spec, places=tuple(map(place_of, sources)), axis=axis, options=options)
         finished = record.finished()
-        left = [task for task in tasks_of(first, wanted, spec.names) if task.gid not in finished]
+        left = [task for task in tasks_of(first, wanted, spec.names) if task.head.gid not in finished]
         for _ in recorded(job, left, executor, record, out, observer):
             pass
         for name in spec.folders:

@@ -17,8 +17,9 @@ from ...mending.state import DIGITS, Change, Into
 from ...readers import Font
 from ...readers.designspace import Designspace
 from ...readers.ufo import Ufo
+from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
-from ..schedule import Head, Place, place_of, sources, workers
+from ..schedule import Place, place_of, sources, workers
 from ..spec import Limits
 
 if TYPE_CHECKING:
@@ -165,7 +166,7 @@ def mend_source(
         from ...writers.back.back import editable
 
         editable(source)
-    tasks: list[Head] = [(name, source.gids[name], ()) for name in sorted({*names}, key=source.gids.__getitem__)]
+    tasks = [Head(name, source.gids[name]) for name in sorted({*names}, key=source.gids.__getitem__)]
     job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
     found, new = MendedSource(str(source.path)), []
     with workers(0, executor=executor) as pool:
