@@ -13,6 +13,7 @@ import typer
 
 from ..datasets.spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
+from ..extras import need
 from ..fields import WRITTEN, About
 from ..files import make_folder, write_whole
 from ..fitting.options import PRESETS, Options
@@ -266,8 +267,6 @@ def view(
     browser: Annotated[bool, About("Open the page in a browser.", flags=("--browser/--no-browser",))] = True,
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
-    from ..extras import need
-
     need("view")
     from ..readers import open_source
     from ..viewer import serve

@@ -11,15 +11,13 @@ from dataclasses import asdict
 from io import StringIO
 from typing import TYPE_CHECKING
 
-from ..checks.finding import place_on_axes
-from ..checks.kinds import KINDS, Level
+from ..checks.finding import Finding, place_on_axes
+from ..checks.kinds import KINDS, Level, Thresholds
 from ..types import counted, shortened
 from .messages import printable
 from .tables import plain
 
 if TYPE_CHECKING:
-    from ..checks.finding import Finding
-    from ..checks.kinds import Thresholds
     from ..runs.jobs.check import Face
 
 MARKDOWN_ROWS = 200

@@ -17,6 +17,7 @@ from typing import Any, NoReturn
 
 import typer
 
+from ..errors import GlyphsplineError, words_of
 from ..files import write_made
 
 DONE, UNDONE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
@@ -40,8 +41,6 @@ QUIET = "GLYPHSPLINE_QUIET"
 @contextmanager
 def errors(quiet: bool) -> Iterator[None]:
     """Print an expected error as one line on standard error, and exit: unusable. ``quiet``: compile silently."""
-    from ..errors import GlyphsplineError, words_of
-
     if quiet:
         os.environ[QUIET] = "1"
     try:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..errors import GlyphsplineError, OutputError
 from ..types import listed
 from . import arguments as opt
 from .messages import json_lines, print_json, progress, say, stop
@@ -51,7 +52,6 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
     Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
     """
-    from ..errors import GlyphsplineError, OutputError
     from ..runs.file_names import folders_for
     from ..runs.folder import locked
     from ..runs.font_search import faces_of

@@ -14,7 +14,7 @@ import typer
 from ..errors import GlyphsplineError, OptionError
 from ..fitting.options import Options
 from ..types import INCHES, listed, shortened
-from ..writers.settings import Maps, Settings, paper_length
+from ..writers.settings import Appearance, Maps, Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
 from .messages import put, say
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from ..readers import AnySource
     from ..typesetting.path import Path
     from ..typesetting.placed import Layout
-    from ..writers.settings import Appearance
 
 SHOWN = 10
 """Maximum number of remarks printed, and of characters named in one."""

@@ -5,13 +5,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Mapping, Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import GlyphsplineError
 from ..files import write_whole
 from ..fitting.convert import convert_many, unfitted
+from ..fitting.convert_masters import MastersResult
 from ..fitting.options import Options
 from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, end_to_end
 from ..outlines.contour_arrays import joined, offsets_of
@@ -27,9 +28,6 @@ from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
 from .spec import MAPS, PARQUET, POLYGON, RESULTS, Limits, suffix_of
-
-if TYPE_CHECKING:
-    from ..fitting.convert_masters import MastersResult
 
 # The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from ...checks.kinks import tags_of
 from ...files import make_folder
-from ...fitting.convert_masters import check_options
+from ...fitting.convert import convert
+from ...fitting.convert_masters import MastersResult, check_options, convert_masters
 from ...fitting.options import Options
 from ...fitting.results import GlyphResult, as_glyph
 from ...outlines.outline import Outline
@@ -22,9 +23,6 @@ from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, kinds_for, place_of, sources, workers
 from ..spec import Limits
 from .convert import SCALE_SAMPLE
-
-if TYPE_CHECKING:
-    from ...fitting.convert_masters import MastersResult
 
 PROFILED = 12
 """Up to this number of glyphs, each has a profile page by default."""
@@ -42,7 +40,7 @@ class Atlas(NamedTuple):
     outside: list[str]
 
 
-Converted: TypeAlias = "GlyphResult | MastersResult | tuple[str, str]"
+Converted: TypeAlias = GlyphResult | MastersResult | tuple[str, str]
 """A result, or a glyph's name and why it could not be converted."""
 
 
@@ -68,9 +66,6 @@ class AtlasJob(Job[str, Converted]):
 
     def together(self, tasks: Sequence[str], contents: Sequence[Any]) -> Converted:
         """Convert one glyph."""
-        from ...fitting.convert import convert
-        from ...fitting.convert_masters import convert_masters
-
         ((source,), (content,)) = sources(self.place), contents
         if self.masters:
             return convert_masters(source.masters(content), self.options)

@@ -13,7 +13,7 @@ from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -22,20 +22,17 @@ from ...checks.finding import Finding, Measured, findings, severity
 from ...checks.kinds import DIRECTION, KINDS, LEVELS, THRESHOLDS, Level, Thresholds
 from ...checks.kinks import AxisKinks, AxisNumbers, KinkReport, tags_of
 from ...errors import FontError, GlyphsplineError
+from ...outlines.masters import Masters
+from ...outlines.outline import Outline
 from ...readers import Source
 from ...readers.source import Location
 from ...report.findings_page import home_of
-from ...types import Head, IntArray
+from ...types import FloatArray, Head, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
 from ..schedule import Side, readers, side_of, sources, workers
 from ..shapes import Shapes
 from ..spec import Limits
-
-if TYPE_CHECKING:
-    from ...outlines.masters import Masters
-    from ...outlines.outline import Outline
-    from ...types import FloatArray
 
 STEPS = 8
 """Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""

@@ -11,17 +11,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from ...curves.curvature import shared_scale
+from ...curves.curvature import Comb, shared_scale
 from ...errors import OutputError
 from ...extras import need
 from ...files import remove_partials, write_whole, writing
-from ...fitting.results import GlyphResult
+from ...fitting.results import GlyphResult, as_glyph
 from ...readers import Source, open_font
 from ...readers.svg import SvgDrawings
 from ...report import FOLDER as GALLERY
 from ...report.gallery import is_whole, write_index, write_report
 from ...types import Names, counted, rounded_up, shortened
 from ...writers.formats import format_named
+from ...writers.svg.comb import combs
 from ..engine import Item, Job, Observer, reason, run
 from ..file_names import file_names
 from ..folder import (
@@ -45,7 +46,6 @@ from ..spec import MAPS, OF_RUNS, PARQUET, REQUEST, RESULTS, RunSpec, describe, 
 from ..summary import NAMED, Summary
 
 if TYPE_CHECKING:
-    from ...curves.curvature import Comb
     from ...writers.font.master_deltas import Redrawn
 
 SCALE_SAMPLE = 200
@@ -87,7 +87,7 @@ class ConvertJob(Output, Job[Task, list[Done]]):
 
 
 @dataclass(frozen=True)
-class SurveyJob(Job[Task, "list[Comb]"]):
+class SurveyJob(Job[Task, list[Comb]]):
     """The combs of outlines, for a run's curvature scale; glyphs that fail are reported when they are converted.
 
     Chunks are small, so that a run over few glyphs uses all workers.
@@ -103,9 +103,6 @@ class SurveyJob(Job[Task, "list[Comb]"]):
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Comb]:
         """The combs of outlines."""
-        from ...fitting.results import as_glyph
-        from ...writers.svg.comb import combs
-
         return [comb for outline in contents for comb in combs(as_glyph(outline))]
 
     def failed(self, task: Task, error: Exception) -> list[Comb]:

@@ -12,6 +12,7 @@ from typing import Any
 
 from ...errors import GlyphsplineError
 from ...extras import has
+from ...outlines.contour_arrays import joined
 from ...outlines.outline import Outline
 from ...readers.pens import NO_AREA
 from ..engine import Item, Job, Observer, run
@@ -101,7 +102,6 @@ def leftovers(outlines: Sequence[Outline]) -> int:
     """Number of points on lines in glyphs of one em, at least one."""
     from ...checks.kinds import LEFTOVER, THRESHOLDS
     from ...checks.segments import WHAT, Segments, joint_findings
-    from ...outlines.contour_arrays import joined
     from ...outlines.segments import all_cubics
 
     contours = joined([outline.arrays for outline in outlines])

@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from ...comparing.difference import PER_EM, Difference
 from ...errors import GlyphsplineError, is_positive, require
 from ...readers import Source
+from ...readers.source import OutlineOrError
 from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Side, heads_of, readers, side_of, workers
 from ..spec import Limits
-
-if TYPE_CHECKING:
-    from ...readers.source import OutlineOrError
 
 
 class Pair(NamedTuple):
@@ -34,7 +32,7 @@ class Unread(NamedTuple):
     error: str
 
 
-Found: TypeAlias = "list[Difference | Unread]"
+Found: TypeAlias = list[Difference | Unread]
 
 
 @dataclass(frozen=True)

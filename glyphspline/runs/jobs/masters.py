@@ -19,18 +19,21 @@ import numpy as np
 
 from ...errors import GlyphsplineError, OutputError
 from ...files import make_folder, remove_partials, write_whole, writing
-from ...fitting.convert_masters import MastersResult, check_options
+from ...fitting.convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
 from ...fitting.options import Options
 from ...fitting.results import ContourResults, GlyphResult, not_fitted
+from ...outlines.masters import Masters
 from ...outlines.outline import Contours
 from ...readers import Font, Source
 from ...readers.designspace import Designspace, GlyphsFile
-from ...readers.single_fonts import axis_of
+from ...readers.single_fonts import Unmatched, axis_of, masters_of_fonts
 from ...report import FOLDER as GALLERY
 from ...types import MadeOnDemand, counted, listed, rounded_up
 from ...writers.font.font_glyphs import SHARE, Flavour
 from ...writers.font.master_deltas import Redrawn, StoredGlyph, Tally, bound_of
 from ...writers.formats import OURS
+from ...writers.svg.document import PolygonData, source_data
+from ...writers.svg.path_data import PathData, curves_data
 from ..engine import Job, Observer, reason
 from ..folder import Done, Output, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
 from ..result_text import stored
@@ -40,8 +43,6 @@ from ..summary import NAMED, MastersSummary
 from .convert import back_to_source, check_back, font_files, tasks_of
 
 if TYPE_CHECKING:
-    from ...fitting.convert_masters import MastersContourResult
-    from ...outlines.masters import Masters
     from ...writers.font.variable_font import VariableSummary
 
 FORMATS = (*OURS, GALLERY, "ufo", "otf", "ttf")
@@ -64,9 +65,6 @@ class MastersJob(Output, Job[Task, list[Done]]):
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """Convert one glyph, store its result and write its drawings: those of the default master."""
-        from ...fitting.convert_masters import convert_masters
-        from ...writers.svg.document import PolygonData, source_data
-        from ...writers.svg.path_data import PathData, curves_data
         from ..worker import Glyph, write_files
 
         (task,) = tasks
@@ -101,8 +99,6 @@ class MastersJob(Output, Job[Task, list[Done]]):
         return [done(task, entry, encode=_encoded)]
 
     def _masters(self, task: Task) -> Masters:
-        from ...readers.single_fonts import Unmatched, masters_of_fonts
-
         fonts = sources(*self.places)
         if self.axis is None:
             return fonts[0].masters(task.head.name)

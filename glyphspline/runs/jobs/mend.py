@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ...checks.kinds import MENDED_UNASKED, THRESHOLDS, Thresholds
 from ...errors import OutputError
@@ -14,6 +14,7 @@ from ...files import writing
 from ...mending.fewer import EDITED
 from ...mending.mend import check_kinds, mended
 from ...mending.state import DIGITS, Change, Into
+from ...outlines.masters import Masters
 from ...readers import Font
 from ...readers.designspace import Designspace
 from ...readers.ufo import Ufo
@@ -21,9 +22,6 @@ from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, place_of, sources, workers
 from ..spec import Limits
-
-if TYPE_CHECKING:
-    from ...outlines.masters import Masters
 
 OF_COMPONENT = "is of a component"
 """Why contours are left that another glyph draws; there they are mended."""

@@ -12,11 +12,16 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ...errors import GlyphsplineError, OptionError
+from ...fitting.convert import convert, convert_many, unfitted
 from ...fitting.options import Options
+from ...fitting.results import GlyphResult
+from ...outlines.outline import Outline
 from ...readers.pens import NO_AREA
 from ...typesetting.placed import LEFT_OUT, Layout
 from ...typesetting.setting import Align, Side
+from ...writers.formats import format_named
 from ...writers.settings import PLAIN_MAPS, Maps, Settings, paper_length
+from ...writers.svg.path_data import curves_data
 from ..engine import Item, Job, reason, run, work
 from ..pool import TimeLimitError, WorkerLostError, sign_of_life
 from ..schedule import Place, place_of, sources
@@ -24,8 +29,6 @@ from ..spec import MAPS, Limits
 from .convert import ConvertJob
 
 if TYPE_CHECKING:
-    from ...fitting.results import GlyphResult
-    from ...outlines.outline import Outline
     from ...typesetting.path import Path
 
 
@@ -69,7 +72,7 @@ class Drawings(NamedTuple):
 
 
 @dataclass(frozen=True)
-class FitJob(Job["Outline", "list[GlyphResult | GlyphsplineError]"]):
+class FitJob(Job[Outline, list[GlyphResult | GlyphsplineError]]):
     """Outlines fitted in batches, within the limits of a run."""
 
     options: Options
@@ -84,8 +87,6 @@ class FitJob(Job["Outline", "list[GlyphResult | GlyphsplineError]"]):
 
     def together(self, tasks: Sequence[Outline], contents: Sequence[Any]) -> list[GlyphResult | GlyphsplineError]:
         """The results of a batch."""
-        from ...fitting.convert import convert_many
-
         return convert_many(contents, self.options, errors="return")
 
     def failed(self, task: Outline, error: Exception) -> list[GlyphResult | GlyphsplineError]:
@@ -142,9 +143,6 @@ def drawings(job: TextJob) -> Drawings:
     Raises:
         GlyphsplineError: it cannot be fitted, or a format cannot draw it.
     """
-    from ...fitting.convert import convert, unfitted
-    from ...writers.formats import format_named
-
     layout, bent, options = job.layout, None, job.options
     if job.path is not None and job.settings.look.view_box == "em":  # there is no line from 0 to the advance
         job = replace(job, settings=replace(job.settings, look=replace(job.settings.look, view_box="ink")))
@@ -212,8 +210,6 @@ def sized(job: TextJob, result: GlyphResult) -> Settings:
     Raises:
         OptionError: there is no ink.
     """
-    from ...writers.svg.path_data import curves_data
-
     box = curves_data(result.arrays.curves, result.options.precision)[0].box
     found = paper_length("--fit-width", job.fit_width)
     if box is None or found is None:
