@@ -13,8 +13,9 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+from ..extras import need
 from ..fitting.results import QUANTITIES
-from ..writers.parquet import POWERS, arrow, fit_columns, measure_types, source_columns, types_of
+from ..writers.parquet import POWERS, fit_columns, measure_types, source_columns, types_of
 from .spec import DatasetSpec
 
 SCHEMA_VERSION = 2
@@ -97,14 +98,14 @@ LENGTHS = (
 
 def type_of(name: str) -> Any:
     """The Arrow type of a name such as "string", or "string[]" for lists."""
-    pa = arrow()
+    pa = need("parquet")
     return pa.list_(type_of(name[:-2])) if name.endswith("[]") else pa.type_for_alias(name)
 
 
 @cache  # each chunk of rows asks for it
 def schema(spec: DatasetSpec, of_fonts: bool = False) -> Any:
     """The columns of rows as an Arrow schema, with those of their fonts if asked for; fields have units as metadata."""
-    pa = arrow()
+    pa = need("parquet")
     unit = "em" if spec.normalise == "em" else "font unit"
     powers = dict.fromkeys(LENGTHS, 1) | POWERS | {"curvature": -1}
     units = {name: {1: unit, 2: f"{unit}^2", -1: f"1/{unit}"}[power] for name, power in powers.items()}
@@ -129,7 +130,7 @@ def schema(spec: DatasetSpec, of_fonts: bool = False) -> Any:
 
 def contour_types(spec: DatasetSpec) -> dict[str, Any]:
     """Arrow types of the columns that a contour has."""
-    pa = arrow()
+    pa = need("parquet")
     point, size = pa.list_(pa.float32(), 2), -1 if spec.points is None else spec.points
     kinds = {"points": point, "tangents": point, "curvature": pa.float32(), "corner": pa.bool_()}
     return (

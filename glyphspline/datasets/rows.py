@@ -11,6 +11,7 @@ from unicodedata import category
 import numpy as np
 
 from ..errors import GlyphsplineError, OptionError
+from ..extras import need
 from ..fitting.convert import convert_many, unfitted
 from ..fitting.measures import check_coordinates
 from ..fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_end
@@ -20,7 +21,7 @@ from ..outlines.outline import FontMetrics, Outline
 from ..outlines.resampling import at_vertices, resampled
 from ..outlines.sampling import CORNER_ANGLE
 from ..types import FloatArray, IntArray
-from ..writers.parquet import arrow, fit_columns, measure_columns, nested, pairs, source_columns
+from ..writers.parquet import fit_columns, measure_columns, nested, pairs, source_columns
 from .columns import OF_FONTS, OF_GLYPHS, SCHEMA_VERSION, schema, type_of
 from .scan import FontFacts, script_of
 from .spec import DatasetSpec
@@ -64,7 +65,7 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
         >>> table_of(outlines, None, DatasetSpec(rows="contour", options=None)).num_rows
         2
     """
-    pa, layout = arrow(), schema(spec)
+    pa, layout = need("parquet"), schema(spec)
     fitted = [result for result in results or () if result is not None]
     glyphs = fitted or as_glyphs(canonical_outlines(outlines))
     if len(glyphs) != len(outlines):
@@ -119,7 +120,7 @@ def shapes(found: ConvertedContours, ems: FloatArray, offsets: IntArray) -> list
 
 def _point_columns(found: ConvertedContours, factors: FloatArray, fitted: bool, spec: DatasetSpec) -> dict[str, Any]:
     """Points of each contour with tangents, curvature and corners."""
-    pa = arrow()
+    pa = need("parquet")
     angle = np.radians(spec.options.corner_angle if fitted and spec.options is not None else CORNER_ANGLE)
     if spec.points is None:
         at = at_vertices(found.curves, found.polygons, angle)
@@ -149,7 +150,7 @@ def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str,
         "advance": np.array([outline.advance for outline in outlines], dtype=np.float64) / scales,
         "em": np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64) / scales,
     }
-    return {name: arrow().array(value, type_of(OF_GLYPHS[name][0])) for name, value in values.items()}
+    return {name: need("parquet").array(value, type_of(OF_GLYPHS[name][0])) for name, value in values.items()}
 
 
 def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec) -> Any:
@@ -157,7 +158,7 @@ def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: Da
 
     Strings are plain ones, as libraries of data sets expect; files keep each distinct one once a row group.
     """
-    pa, layout = arrow(), schema(spec, of_fonts=True)
+    pa, layout = need("parquet"), schema(spec, of_fonts=True)
     first = {outline.gid: outline.unicodes[0] for outline in outlines if outline.unicodes}
     codes = [first.get(gid) for gid in table["gid"].to_pylist()]
     metrics = outlines[0].metrics if outlines else FontMetrics()  # of all in a batch: drawings have their own
@@ -203,7 +204,7 @@ def rasters(outlines: Sequence[Outline], contours: ContourArrays, offsets: IntAr
         placed = Affine2D().translate(-left, -bottom).scale(size / em)
         renderer.draw_path(context, Path(*_path(own)), placed, (0.0, 0.0, 0.0))
         pictures[g] = np.asarray(renderer.buffer_rgba())[..., 3]
-    pa = arrow()
+    pa = need("parquet")
     lines = pa.FixedSizeListArray.from_arrays(pa.array(pictures.ravel()), size)
     return pa.FixedSizeListArray.from_arrays(lines, size)
 

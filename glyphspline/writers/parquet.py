@@ -55,7 +55,7 @@ POWERS = {
 
 def schema() -> Any:
     """The table's columns as an Arrow schema, with its version as metadata."""
-    pa = arrow()
+    pa = need("parquet")
     of_glyph = {
         "font": pa.string(),
         "style": pa.string(),
@@ -111,12 +111,12 @@ def write_rows(tables: Iterable[Any], file: Any, group: int = 512) -> int:
 
 def writing_of(layout: Any) -> dict[str, Any]:
     """Settings of a Parquet writer. Coordinates hardly repeat, and the least of them says nothing."""
-    plain = [field.name for field in layout if not arrow().types.is_nested(field.type)]
+    plain = [field.name for field in layout if not need("parquet").types.is_nested(field.type)]
     return {"compression": "zstd", "use_dictionary": plain, "write_statistics": plain}
 
 
 def _groups(tables: Iterable[Any], waiting: Any, group: int) -> Iterator[Any]:
-    concat = arrow().concat_tables
+    concat = need("parquet").concat_tables
     for table in tables:
         waiting = concat([waiting, table])
         while waiting.num_rows >= group:
@@ -131,7 +131,7 @@ def _groups(tables: Iterable[Any], waiting: Any, group: int) -> Iterator[Any]:
 
 def rows(font: tuple[str, str], glyphs: list[GlyphResult]) -> Any:
     """An Arrow table with a row for each contour of glyphs of a font with this family and style."""
-    pa, layout = arrow(), schema()
+    pa, layout = need("parquet"), schema()
     found, offsets = end_to_end(glyphs)
     units = np.ones(len(found))
     columns = fit_columns(found, units) | source_columns(found, units) | measure_columns(found, units)
@@ -152,15 +152,6 @@ def rows(font: tuple[str, str], glyphs: list[GlyphResult]) -> Any:
     return pa.Table.from_arrays([columns[name] for name in layout.names], schema=layout)
 
 
-def arrow() -> Any:
-    """The module pyarrow.
-
-    Raises:
-        GlyphsplineError: it is not installed.
-    """
-    return need("parquet")
-
-
 def types_of(columns: Callable[[ConvertedContours, FloatArray], dict[str, Any]]) -> dict[str, Any]:
     """Arrow types of the columns that one of the functions below makes."""
     return {name: column.type for name, column in columns(end_to_end([])[0], np.empty(0)).items()}
@@ -168,14 +159,14 @@ def types_of(columns: Callable[[ConvertedContours, FloatArray], dict[str, Any]])
 
 def measure_types() -> dict[str, Any]:
     """Arrow types of the columns of the measures."""
-    pa = arrow()
+    pa = need("parquet")
     types = {"int": pa.int64(), "float": pa.float64(), "bool": pa.bool_()}
     return {field.name: types[str(field.type).split(" | ")[0]] for field in fields(Measures)}
 
 
 def nested(values: Any, *offsets: IntArray) -> Any:
     """Lists of an Arrow array, or lists of lists: the innermost offsets come first."""
-    pa = arrow()
+    pa = need("parquet")
     for own in offsets:
         values = pa.ListArray.from_arrays(pa.array(own.astype(np.int32)), values)
     return values
@@ -183,13 +174,13 @@ def nested(values: Any, *offsets: IntArray) -> Any:
 
 def pairs(points: FloatArray) -> Any:
     """Points (N, 2) as an Arrow array of N lists of two."""
-    pa = arrow()
+    pa = need("parquet")
     return pa.FixedSizeListArray.from_arrays(pa.array(points.ravel()), 2)
 
 
 def source_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]:
     """The source of C contours; coordinates are multiplied by (C,) ``factors``."""
-    pa, source = arrow(), found.source
+    pa, source = need("parquet"), found.source
     points = source.points * np.repeat(factors, np.diff(source.starts))[:, None]
     return {
         "source_degrees": nested(pa.array(source.degrees.astype(np.uint8)), source.offsets),
@@ -199,7 +190,7 @@ def source_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, A
 
 def fit_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]:
     """The fit of C contours; lengths, knots too, are multiplied by (C,) ``factors``."""
-    pa, curves, polygons, controls = arrow(), found.curves, found.polygons, found.controls
+    pa, curves, polygons, controls = need("parquet"), found.curves, found.polygons, found.controls
     each = np.repeat(factors, np.diff(found.arc_offsets))
     splines = [arc.spline for arc in found.arcs]
     knots, at_knots = _numbers([spline.knots for spline in splines], each)
@@ -227,12 +218,12 @@ def fit_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]
 def _numbers(parts: list[FloatArray], factors: FloatArray) -> tuple[Any, IntArray]:
     """Numbers of some arcs end to end, multiplied, and where each arc begins."""
     offsets = offsets_of([len(part) for part in parts])
-    return arrow().array(np.concatenate([np.empty(0), *parts]) * np.repeat(factors, np.diff(offsets))), offsets
+    return need("parquet").array(np.concatenate([np.empty(0), *parts]) * np.repeat(factors, np.diff(offsets))), offsets
 
 
 def measure_columns(found: ConvertedContours, factors: FloatArray) -> dict[str, Any]:
     """The measures of C contours, null where not computed, with lengths multiplied by (C,) ``factors``."""
-    pa, columns = arrow(), {}
+    pa, columns = need("parquet"), {}
     scaled = bool((factors != 1.0).any())
     for name, kind in measure_types().items():
         values = found.measures.get(name)
