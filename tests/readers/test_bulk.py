@@ -59,11 +59,11 @@ def assert_same(found: Outline | GlyphsplineError, expected: Outline | Glyphspli
         assert (own.dtype, own.shape, own.tobytes()) == (other.dtype, other.shape, other.tobytes()), found.name
 
 
-def assert_all_same(font: Font, glyphs: int | None = None) -> int:
+def assert_all_same(font: Font, glyphs: int | None = None, size: int = bulk.BUFFER_SIZE) -> int:
     """Compare all glyphs, read by the font and by a bulk reader of its own; how many have an error."""
     heads = heads_of(font)[:glyphs]
     by_font = font.outlines([head.name for head in heads], errors="return")
-    alone = BulkReader(font.path, font.face_index, font.location).outlines(heads, font.metrics)
+    alone = BulkReader(font.path, font.face_index, font.location, size=size).outlines(heads, font.metrics)
     for head, *both in zip(heads, by_font, alone, strict=True):
         expected = read_carefully(font, head)
         for found in both:
@@ -234,10 +234,9 @@ def test_contours_are_views_of_arrays_that_the_glyphs_share() -> None:
 
 
 @pytest.mark.parametrize("size", [1 << 8, 1 << 10, 1 << 12])
-def test_glyphs_that_fill_the_buffer_are_read_in_several_passes(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bulk, "BUFFER_SIZE", size)
+def test_glyphs_that_fill_the_buffer_are_read_in_several_passes(size: int) -> None:
     for file in ("kouzan-gyosho.otf", "edge-cases.ttf"):
-        assert assert_all_same(open_font(FONTS / file)) == 0
+        assert assert_all_same(open_font(FONTS / file), size=size) == 0
 
 
 def test_no_glyphs_give_no_outlines() -> None:

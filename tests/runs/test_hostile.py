@@ -21,13 +21,12 @@ from fontTools.ttLib import TTFont
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
-from glyphspline.runs import schedule
 from glyphspline.runs.folder import entries_of
 from glyphspline.runs.jobs.atlas import make_atlas
 from glyphspline.runs.jobs.check import Asked, check_fonts
 from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.jobs.text import TextJob, draw, drawings
-from glyphspline.runs.schedule import workers
+from glyphspline.runs.schedule import kinds_for, workers
 from glyphspline.runs.spec import Limits, RunSpec
 from glyphspline.typesetting.lay_out import layout
 from glyphspline.writers.settings import Settings
@@ -150,15 +149,13 @@ def test_a_text_is_drawn_without_the_glyph_that_never_ends(tmp_path: Path) -> No
     assert drawn.contents[0].count(b"M") == 2
 
 
-def test_check_and_atlas_go_on_without_the_glyph_that_never_ends(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(schedule.workers, "__defaults__", (5.0, (), 0))
+def test_check_and_atlas_go_on_without_the_glyph_that_never_ends(tmp_path: Path) -> None:
     endless_font(tmp_path / "endless.otf")
-    (face,) = check_fonts([tmp_path / "endless.otf"], Asked(), jobs=1, alone=True)
-    assert (face.glyphs, face.failed) == (2, [("endless", "took longer than 5 s")])
-    font = open_font(tmp_path / "endless.otf")
-    found = make_atlas(font, font.glyph_names, tmp_path / "atlas.pdf", Options(), jobs=1)
+    with workers(1, 5.0, ["checks", *kinds_for(Options())], expected=1) as pool:
+        (face,) = check_fonts([tmp_path / "endless.otf"], Asked(), executor=pool, alone=True)
+        assert (face.glyphs, face.failed) == (2, [("endless", "took longer than 5 s")])
+        font = open_font(tmp_path / "endless.otf")
+        found = make_atlas(font, font.glyph_names, tmp_path / "atlas.pdf", Options(), executor=pool)
     assert found == (3, ["endless: took longer than 5 s"], [])
 
 

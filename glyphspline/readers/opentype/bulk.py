@@ -231,7 +231,7 @@ class BulkReader:
     Args:
         path: the file. face_index: which face of a collection.
         location: axis tag to user-space value, within the axes' limits.
-        face: the same face at the location, if it is open.
+        face: the same face at the location, if it is open. size: of the buffer.
 
     Raises:
         FontError: the file cannot be read.
@@ -243,12 +243,13 @@ class BulkReader:
         face_index: int = 0,
         location: Mapping[str, float] | Sequence[tuple[str, float]] = (),
         face: HarfBuzz | None = None,
+        size: int = BUFFER_SIZE,
     ) -> None:
         self._path = path
         with opening(path):
             self._hb = face or HarfBuzz(path, face_index, dict(location))
-        self._buffer = np.zeros(BUFFER_SIZE)
-        self._buffer[CAPACITY] = BUFFER_SIZE
+        self._buffer = np.zeros(size)
+        self._buffer[CAPACITY] = size
         self._pointer = _capsule(self._buffer.ctypes.data)
         self._lock = Lock()
 
@@ -298,7 +299,7 @@ class BulkReader:
         for gid, count in zip(gids, expected.tolist(), strict=True):
             if count > 0 or count == UNCOUNTED:
                 draw(gid, functions, self._pointer)
-            if used[USED] == BUFFER_SIZE and len(places) > 1:
+            if used[USED] == used[CAPACITY] and len(places) > 1:
                 break
             places.append(used[USED])
         expected = expected[: len(places) - 1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
@@ -86,6 +87,7 @@ def make_atlas(
     profiles: Sequence[str] | None = None,
     maps: Maps = BOTH,
     jobs: int | None = 0,
+    executor: Executor | None = None,
     observer: Observer | None = None,
 ) -> Atlas:
     """Write the atlas of some glyphs; along an ``axis``, a page a glyph of a variable font.
@@ -96,6 +98,7 @@ def make_atlas(
         axis: its tag. profiles: glyphs with a page of κ(s); by default all if they are at most ``PROFILED``, else none.
         maps: what the pages of combs show; along an axis only their scale.
         jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
+        executor: used instead of worker processes; it is not closed.
         observer: called with the number of glyphs done, of all, and of those that failed.
 
     Raises:
@@ -111,7 +114,8 @@ def make_atlas(
     sample = names[:: -(-total // SCALE_SAMPLE) or 1]
     job, notable = AtlasJob(place_of(source), options, axis is not None), Atlas(0, [], [])
     kept: dict[str, Any] = {}
-    with workers(jobs, kinds=kinds_for(options, masters=job.masters), expected=total) as pool:
+    kinds = kinds_for(options, masters=job.masters)
+    with workers(jobs, kinds=kinds, expected=total, executor=executor) as pool:
         if axis is None:
             kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
             surveyed = [glyph for glyph in kept.values() if isinstance(glyph, GlyphResult)]

@@ -331,6 +331,7 @@ def check_fonts(
     face_index: int | None = None,
     location: Location = None,
     jobs: int | None = None,
+    executor: Executor | None = None,
     watch: Callable[[], AbstractContextManager[Observer | None]] = nullcontext,
     alone: bool = False,
 ) -> Iterator[Face]:
@@ -340,12 +341,13 @@ def check_fonts(
         fonts: files. asked: what is looked for. chosen: the glyphs of each font; without it, all.
         face_index: the only face of each file; without it, all. location: of variable fonts.
         jobs: worker processes; None takes all cores, 0 does everything in this process, without a time limit.
+        executor: used instead of worker processes; it is not closed.
         watch: opened for each face; yields its observer, see :data:`.engine.Observer`.
         alone: one face of one font is checked; its errors are raised.
     """
     if alone:
         face_index = face_index or 0
-    with workers(jobs, kinds=["checks"], expected=1) as pool:
+    with workers(jobs, kinds=["checks"], expected=1, executor=executor) as pool:
         for font in fonts:
             try:
                 for source in faces_of(font, location, face_index):
