@@ -53,13 +53,13 @@ paper: .venv/.ready
 # 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
 # Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.
 check-reference: .venv/.ready
-	$(BIN)/python scripts/adversarial_footpoints.py
-	$(BIN)/python scripts/check_reference.py
+	$(BIN)/python -m scripts.adversarial_footpoints
+	$(BIN)/python -m scripts.check_reference
 
 # What written glyphs of five installed faces, and 500 contours in tangles or thinner than the tolerance, cross that their
 # sources do not, and are not flagged for: seven minutes or so.
 check-topology: .venv/.ready
-	$(BIN)/python scripts/topology.py
+	$(BIN)/python -m scripts.topology
 
 # 2000 starts of a command, 500 of them under load, and in 100 more a process is killed: an hour of two free cores.
 check-starts: .venv/.ready

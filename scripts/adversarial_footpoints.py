@@ -24,12 +24,10 @@ import sys
 from decimal import Decimal, localcontext
 from itertools import pairwise
 from math import comb
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
 from glyphspline.compiled import compiled
 from glyphspline.interpolation.kernels.blocks import (
     BAD,
@@ -50,7 +48,8 @@ from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
 from glyphspline.interpolation.kernels.newton_simd import seek
 from glyphspline.interpolation.method import TIE_DISTANCE
 from glyphspline.types import FloatArray, IntArray
-from scripts.survey import parser, surveyed
+
+from .survey import parser, surveyed
 
 BOUND = 1e-12
 """The miss that ``footpoint.py`` states as its bound."""

@@ -1,6 +1,6 @@
 """DXF files opened and extruded in a CAD kernel: OCCT, by FreeCAD's importer (freecadcmd).
 
-    python scripts/check_cad.py [FONT …] [--text 龍g好] [--looks smooth,sharp,g2] [--kinds spline,…] [--brief]
+    python -m scripts.check_cad [FONT …] [--text 龍g好] [--looks smooth,sharp,g2] [--kinds spline,…] [--brief]
 
 For each character, and for smooth contours, corners, and cubics that share tangents, as splines, arcs and polylines:
 the file is imported, its edges are joined to wires, the wires to a face with holes, and the face is extruded. Exit
@@ -34,8 +34,7 @@ from glyphspline.outlines.segments import all_cubics
 from glyphspline.writers.dxf import holes, without_spurs
 from glyphspline.writers.settings import DxfKind, Settings
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import parser
+from .survey import parser
 
 SIZE = 20.0
 """Millimetres from descender to ascender."""

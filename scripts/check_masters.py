@@ -1,6 +1,6 @@
 """Variable fonts converted in all masters at once, beside their masters one by one and their own instances.
 
-    python scripts/check_masters.py FONT... [--text TEXT | --gids 5,10-20] [--effort best] [--corners smooth] [--seed 1]
+    python -m scripts.check_masters FONT... [--text TEXT | --gids 5,10-20] [--effort best] [--corners smooth] [--seed 1]
 
 For each glyph: segments, certified or not, and 40 random locations, at which the result's instance is sampled densely
 and compared with the source's, both ways. Fonts with CFF2 outlines are written too, and turns at inner joints are those
@@ -9,7 +9,6 @@ that HarfBuzz draws.
 
 from __future__ import annotations
 
-import sys
 import time
 from pathlib import Path
 
@@ -27,8 +26,7 @@ from glyphspline.types import BoolArray, FloatArray
 from glyphspline.writers.font.master_deltas import Redrawn
 from glyphspline.writers.font.variable_font import to_variable_font
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import SegmentPen, distances, parser, sampled
+from .survey import SegmentPen, distances, parser, sampled
 
 TEXT = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&?!@"
 

@@ -17,12 +17,11 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import parser, surveyed, table
 from tests.agreement import TOLERANCE, compare, spread
 from tests.polygons import polygon
+
+from .survey import parser, surveyed, table
 
 SMALL = 10
 """Eight runs may miss the worst, and the compiled one rounds more than once a pass."""

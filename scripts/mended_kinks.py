@@ -1,4 +1,4 @@
-"""How many kinks are mended, and how: ``python scripts/mended_kinks.py SOURCE… [--tolerance 1] [--glyphs 300]``.
+"""How many kinks are mended, and how: ``python -m scripts.mended_kinks SOURCE… [--tolerance 1] [--glyphs 300]``.
 
 Sources are fonts, UFOs and designspaces, of which glyphs are chosen at random. Counted are kinks of a degree or more,
 at masters or along axes; nothing is written. Glyphs that changed are checked again, at masters and along axes, and
@@ -9,7 +9,6 @@ one process, reading included.
 
 from __future__ import annotations
 
-import sys
 import time
 from collections import Counter
 from dataclasses import replace
@@ -25,8 +24,7 @@ from glyphspline.readers.designspace import Designspace
 from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.jobs.mend import mend_source
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import parser, table
+from .survey import parser, table
 
 LOCATIONS = 5
 """Of each glyph, at which it is compared with what it was."""

@@ -1,4 +1,4 @@
-"""Faults planted in real outlines, and how many of them are found: ``python scripts/planted_faults.py``.
+"""Faults planted in real outlines, and how many of them are found: ``python -m scripts.planted_faults``.
 
 The seven faces are of the Debian packages fonts-ebgaramond, fonts-inter, fonts-noto-core and fonts-dejavu, and of
 matplotlib. Of each fault twenty are planted in each face, each alone in a glyph that has no such finding there. Faults
@@ -41,9 +41,8 @@ from glyphspline.curves.bezier import cross, derivative_points, evaluate, signed
 from glyphspline.outlines.outline import Contour
 from glyphspline.types import FloatArray
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.drawn_fonts import begun, ended
-from scripts.survey import faces, parser, table
+from .drawn_fonts import begun, ended
+from .survey import faces, parser, table
 
 FACES = (
     "EBGaramond12-Regular.otf", "Inter-Regular.otf", "NotoSans-Regular.ttf", "NotoSerif-Regular.ttf",

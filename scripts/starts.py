@@ -24,8 +24,7 @@ from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import ROOT, parser, table
+from .survey import ROOT, parser, table
 
 FONT = ROOT / "fonts_test" / "edge-cases.ttf"
 CONVERT = [sys.executable, "-X", "faulthandler", "-m", "glyphspline", "convert", str(FONT), "--all", "--step", "60"]

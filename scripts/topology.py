@@ -1,6 +1,6 @@
 """How often a written glyph has crossings that its source has not, or contours without area, and is not flagged.
 
-``python scripts/topology.py [--glyphs 60] [--contours 500] [--seed 0] [--jobs 2] [--faces serif,ukai]``
+``python -m scripts.topology [--glyphs 60] [--contours 500] [--seed 0] [--jobs 2] [--faces serif,ukai]``
 
 Glyphs are spread evenly over the ideographs of five faces, of the Debian packages fonts-lxgw-wenkai, fonts-arphic-ukai,
 fonts-noto-cjk and fonts-kouzan-mouhitsu, or in a folder of GLYPHSPLINE_FACES; those that are not installed are skipped.
@@ -31,11 +31,10 @@ from fontTools.ttLib import TTFont
 
 import glyphspline as gs
 from glyphspline.fitting.options import Corners, Effort
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import faces, parser, surveyed, table
 from tests.hard_contours import hard_contour, outline_of
 from tests.topology import Drawing, defects, font_contours, unflagged
+
+from .survey import faces, parser, surveyed, table
 
 
 class Face(NamedTuple):

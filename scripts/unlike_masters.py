@@ -1,6 +1,6 @@
 """How often outlines of one glyph, whose points do not correspond, are matched as their designer meant them.
 
-``python scripts/unlike_masters.py FOLDER [--seeds 1] [--masters 2] [--text 'AB…'] [--jobs 2]``
+``python -m scripts.unlike_masters FOLDER [--seeds 1] [--masters 2] [--text 'AB…'] [--jobs 2]``
 
 FOLDER has variable fonts with a weight axis. Static instances at the ends of that axis (with ``--masters 3`` and a
 default inside it also there) correspond point by point, so every point's true partner is known. Then each instance is
@@ -44,8 +44,7 @@ from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.sampling import CORNER_ANGLE
 from glyphspline.types import FloatArray
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
-from scripts.survey import SegmentPen, distances, parser, surveyed, table
+from .survey import SegmentPen, distances, parser, surveyed, table
 
 LATIN = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&@?!"
 IDEOGRAPHS = 50
