@@ -93,7 +93,7 @@ class Task(NamedTuple):
 class Output:
     """What a worker needs to write the files of glyphs: the folder, and how.
 
-    ``curvature_scale``: of all maps; None: each glyph has its own. ``font``: family and style, for rows.
+    ``curvature_scale``: of all maps; None: the one asked for, or 4 in 1/em. ``font``: family and style, for rows.
     """
 
     out: Path
