@@ -87,10 +87,10 @@ def interpolate(
         diagnostics,
     )  # fmt: skip
     tangents = None if end_tangents is None else [end_tangents]
-    (result,) = interpolate_each([points], method, [knots] if own else None, tangents, 1)
+    (result,) = interpolate_each([points], method, [knots] if own else None, tangents, 1, keep_points=True)
     if isinstance(result, PolygonError):
         raise result
-    return _with_points(result, points)
+    return result
 
 
 @overload
@@ -141,21 +141,14 @@ def interpolate_many(
     if any(each is not None and len(each) != len(everything) for each in (own, end_tangents)):
         raise OptionError("knots and end_tangents are given for each polygon of the list, or for none")
     results: list[Any] = interpolate_each(
-        everything, Method(variant, knots=rule, **options), own, end_tangents, threads
+        everything, Method(variant, knots=rule, **options), own, end_tangents, threads, keep_points=True
     )
     for k, result in enumerate(results):
         if isinstance(result, PolygonError):
             result.locate(contour=k)
             if errors == "raise":
                 raise result
-        else:
-            results[k] = _with_points(result, everything[k])
     return results
-
-
-def _with_points(result: Interpolation, points: ArrayLike) -> Interpolation:
-    given = np.array(points, dtype=np.float64)
-    return replace(result, points=np.delete(given, result.merged, axis=0) if len(result.merged) else given)
 
 
 def interpolate_each(
@@ -164,8 +157,13 @@ def interpolate_each(
     own_knots: Sequence[ArrayLike] | None,
     tangents: Sequence[Tangents | None] | None,
     threads: int | None,
+    keep_points: bool = False,
 ) -> list[Interpolation | PolygonError]:
-    """A result without ``points``, or an error, for each polygon, in order; arguments as of the functions above."""
+    """A result or an error for each polygon, in order; arguments as of the functions above.
+
+    Args:
+        keep_points: whether results have a copy of their ``points``.
+    """
     if method.closed and tangents is not None and any(pair is not None for pair in tangents):
         raise OptionError("end_tangents belong to an open arc (closed=False)")
     results: list[Any] = [None] * len(polygons)
@@ -192,11 +190,12 @@ def interpolate_each(
 
     def one(j: int) -> Interpolation | PolygonError:
         try:
-            return interpolate_any_degree(
+            result = interpolate_any_degree(
                 parts[j], method, given[j] if given else None, None if ends is None else ends[j]
             )
         except PolygonError as error:
             return error
+        return replace(result, points=np.delete(parts[j], result.merged, axis=0)) if keep_points else result
 
     found: list[Any]
     if method.stepwise:
@@ -205,7 +204,7 @@ def interpolate_each(
         points, offsets = parts[0] if len(parts) == 1 else np.concatenate(parts), [0, *accumulate(map(len, parts))]
         knots = np.concatenate(given) if given else None
         batch = interpolate_batch(points, np.array(offsets), method, knots=knots, end_tangents=ends, threads=threads)
-        found = batch.results()
+        found = batch.results((points.copy() if len(parts) == 1 else points) if keep_points else None)
     for j, k in enumerate(good):
         results[k] = found[j] or explain(parts[j], given[j] if given else method.knots, method.closed)
         if method.finish == "solve" and isinstance(found[j], Interpolation):

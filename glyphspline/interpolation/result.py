@@ -126,11 +126,11 @@ class BatchedInterpolation:
         k = range(len(self))[k]
         return next(self._results(k, int(self.arrays.whole[:k, 2].sum()) + k))
 
-    def results(self) -> list[Interpolation]:
-        """All polygons' results; None stands for one that was refused."""
-        return list(self._results(0, 0))
+    def results(self, points: FloatArray | None = None) -> list[Interpolation]:
+        """All polygons' results, with views of the ``points`` (N, d) if given; None stands for one that was refused."""
+        return list(self._results(0, 0, points))
 
-    def _results(self, k: int, first: int) -> Iterator[Any]:
+    def _results(self, k: int, first: int, points: FloatArray | None = None) -> Iterator[Any]:
         """Results from polygon k on, whose residuals begin at ``first``."""
         found, closed, tolerances = self.arrays, self.closed, self.tolerances[k:].tolist()
         offsets, whole, rates = self.offsets[k:].tolist(), found.whole[k:].tolist(), found.rates[k:].tolist()
@@ -140,16 +140,17 @@ class BatchedInterpolation:
                 yield None
             else:
                 u, P, vertices = start + k * closed, start + 2 * k * (not closed), slice(start, start + n)
-                merged = NOTHING_MERGED
+                merged, own = NOTHING_MERGED, None if points is None else points[start:stop]
                 if n < stop - start:
                     merged = np.setdiff1d(np.arange(stop - start), found.kept[vertices])
+                    own = None if own is None else own[found.kept[vertices]]
                 residuals = self.residuals[first : first + iterations + 1]
                 spline = Spline.trusted(
                     found.controls[P : P + n + 2 * (not closed)], found.knots[u : u + n + closed], 3, closed
                 )
                 yield Interpolation(
                     spline, found.parameters[vertices], found.bounds[vertices], iterations, residuals,
-                    float(residuals[-1]) < tolerance, fallbacks, rate, merged, uncertified,
+                    float(residuals[-1]) < tolerance, fallbacks, rate, merged, uncertified, points=own,
                 )  # fmt: skip
             k, first = k + 1, first + iterations + 1
 
