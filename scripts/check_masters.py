@@ -18,7 +18,7 @@ import uharfbuzz as hb
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic, derivative_points, signed_curvature
 from glyphspline.curves.cubics import turns
-from glyphspline.curves.fairness import curvature_extrema
+from glyphspline.curves.fairness import TURN, curvatures, extrema_of
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.fitting.measures import CORNER, extrema_floor
 from glyphspline.runs.jobs.masters import redrawn_glyph
@@ -103,7 +103,8 @@ def compare(result: MastersResult, tolerance: float, rng: np.random.Generator) -
             curve, source = contour.curve.mixed(weights).cubics(), contour.source.mixed(weights).cubics()
             a, b = sampled(curve, step), sampled(source, step)
             away, length = max(distances(a, b).max(), distances(b, a).max()), np.hypot(*np.diff(b, axis=0).T).sum()
-            extrema = curvature_extrema(curve, length, CORNER) - extrema_floor(source, length)[1]
+            values, _, n = curvatures(curve, length, CORNER)
+            extrema = extrema_of(values, n, TURN / length) - extrema_floor(source, length)[1]
             found.append((float(away / tolerance), largest_turn(curve, contour.inner, 1e-9), max(extrema, 0)))
     return found
 

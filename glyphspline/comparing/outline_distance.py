@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import ascending
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..curves.cubics import extent, jet, length, nearest, section
 from ..curves.pairing import ROUNDING, apart
 from ..outlines.contour_arrays import ContourArrays
@@ -58,13 +58,15 @@ class Chains(NamedTuple):
 
     Attributes:
         cubics: (m, 4, 2) the segments of all contours. offsets: (C + 1,) where contours begin in these.
-        owners: (m,) the contour of each segment. bends: (m,) as above.
+        owners: (m,) the contour of each segment, and beside: (m, 2) the segments before and after it there.
+        bends: (m,) as above.
         boxes: (m, 4) left, bottom, right, top of Bézier points. groups: (g, 4) likewise of ``GROUP`` segments in a row.
     """
 
     cubics: FloatArray
     offsets: IntArray
     owners: IntArray
+    beside: IntArray
     bends: FloatArray
     boxes: FloatArray
     groups: FloatArray
@@ -78,10 +80,13 @@ def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
     seconds = cubics[:, :2] - 2 * cubics[:, 1:3] + cubics[:, 2:]
     bends = 0.75 * np.sqrt((seconds * seconds).sum(axis=2)).max(axis=1)
     owners = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
-    return Chains(cubics, offsets, owners, bends, boxes, np.concatenate([low, high], axis=1))
+    at, beside = np.arange(len(cubics)), np.empty((len(cubics), 2), dtype=np.int64)
+    first, last = offsets[owners], offsets[owners + 1] - 1
+    beside[:, 0], beside[:, 1] = np.where(at == first, last, at - 1), np.where(at == last, first, at + 1)
+    return Chains(cubics, offsets, owners, beside, bends, boxes, np.concatenate([low, high], axis=1))
 
 
-@compiled
+@inlined
 def from_box(box: FloatArray, x: float, y: float) -> float:
     """Distance of a point from a box (4,)."""
     return length(max(max(box[0] - x, x - box[2]), 0.0), max(max(box[1] - y, y - box[3]), 0.0))
@@ -96,15 +101,6 @@ def reached(cubics: FloatArray, s: int, guess: float, x: float, y: float) -> tup
     px, py, _, _, _, _ = jet(cubics, s, guess)
     before = length(px - x, py - y)
     return (z, d) if d <= before else (guess, before)
-
-
-@compiled
-def neighbour(chains: Chains, s: int, step: int) -> int:
-    """The segment after (1) or before (-1) segment s of its contour."""
-    c = chains.owners[s]
-    first, last = chains.offsets[c], chains.offsets[c + 1]
-    s += step
-    return first if s == last else last - 1 if s < first else s
 
 
 @compiled
@@ -161,10 +157,10 @@ def nearest_of_outline(
     """
     at, best = reached(chains.cubics, s, z, x, y)
     segment = s
-    for step in range(-1, 2, 2):
-        other = neighbour(chains, s, step)
+    for after in range(2):
+        other = chains.beside[s, after]
         if other != s and from_box(chains.boxes[other], x, y) < best:
-            guess, d = reached(chains.cubics, other, 0.0 if step > 0 else 1.0, x, y)
+            guess, d = reached(chains.cubics, other, 1.0 - after, x, y)
             if d < best:
                 segment, at, best = other, guess, d
     for g in range(len(chains.groups)):
@@ -276,23 +272,23 @@ def section_bound(
     """
     cubic, best, n = cubics[i], np.inf, other.offsets[other.owners[s0] + 1] - other.offsets[other.owners[s0]]
     ahead = (s1 - s0) % n
-    step, joints = (1, ahead) if 2 * ahead <= n else (-1, n - ahead)
+    after, joints = (1, ahead) if 2 * ahead <= n else (0, n - ahead)
     if n == 2 and 2.0 * z0 < 1.0:  # both ways have one joint: that of the nearer end
-        step = -1
+        after = 0
     # Segments up to which a stretch is paired with one section.
     if other.owners[s0] == other.owners[s1] and joints < 8:
         best, x, s, z = 0.0, low, s0, z0
         for k in range(joints + 1):
             segment, stop, cut = other.cubics[s], z1, high
             if k < joints:
-                stop = 1.0 if step > 0 else 0.0
+                stop = float(after)
                 px, py, _, _, _, _ = jet(other.cubics, s, stop)
                 cut = nearest(cubic, x, high, x + (high - x) / (joints + 1 - k), px, py)
             best = max(best, paired(cubic, x, cut, segment, z, stop, sections))
             if best > limit and k < joints:
                 best = np.inf
                 break
-            x, z, s = cut, 1.0 - stop, neighbour(other, s, step)
+            x, z, s = cut, 1.0 - stop, other.beside[s, after]
     if best > limit:
         x, y, _, _, _, _ = jet(cubics, i, high)
         z = nearest(other.cubics[s0], 0.0, 1.0, z0, x, y)

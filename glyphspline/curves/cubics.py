@@ -1,4 +1,4 @@
-"""Plane cubics, compiled: evaluation, nearest points, subdivision, tangents, lengths, Bézier form of splines.
+"""Plane cubics, compiled: evaluation, nearest points, subdivision, tangents, lengths.
 
 A chain of cubics is an array (m, 4, 2). A *place* j + x of a closed chain is local parameter x of its segment j; places
 count on past m.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..types import FloatArray, IntArray
+from ..types import FloatArray
 
 CONVEX = 0.2
 """Newton's method for a nearest point takes the second derivative of the squared distance only where it exceeds this
@@ -28,28 +28,6 @@ ONE = np.uint64(1)
 def length(x: float, y: float) -> float:
     """Length of a vector whose square neither over- nor underflows: in a third of the time of ``hypot``."""
     return np.sqrt(x * x + y * y)
-
-
-@compiled
-def raised(points: FloatArray, degrees: IntArray) -> FloatArray:
-    """(m, 4, 2) the segments of a contour as cubics; see :class:`..outlines.outline.Contour`."""
-    m, n = len(degrees), len(points)
-    cubics = np.empty((m, 4, 2))
-    at = 0
-    for s in range(m):
-        d = degrees[s]
-        for c in range(2):
-            a, b = points[at, c], points[(at + d) % n, c]
-            cubics[s, 0, c], cubics[s, 3, c] = a, b
-            if d == 3:
-                cubics[s, 1, c], cubics[s, 2, c] = points[at + 1, c], points[at + 2, c]
-            elif d == 2:
-                q = points[at + 1, c]
-                cubics[s, 1, c], cubics[s, 2, c] = a + (q - a) * (2 / 3), b + (q - b) * (2 / 3)
-            else:
-                cubics[s, 1, c], cubics[s, 2, c] = a + (b - a) / 3, b + (a - b) / 3
-        at += d
-    return cubics
 
 
 @compiled
@@ -218,37 +196,3 @@ def length_table(cubics: FloatArray, weights: FloatArray) -> FloatArray:
             total += chords[i]
             table[np.uint64(j * steps + 1) + i] = total
     return table
-
-
-@compiled
-def spline_beziers(controls: FloatArray, knots: FloatArray, closed: bool, cubics: FloatArray) -> None:
-    """Bézier points of a cubic B-spline, a segment a span, into ``cubics`` (n, 4, 2).
-
-    Args:
-        controls: (n, 2) if closed, where row i belongs to knot i; (n + 3, 2) if clamped at both ends.
-        knots: (n + 1,).
-    """
-    n = len(knots) - 1
-    before = knots[n] - knots[n - 1] if closed else 0.0
-    for k in range(n):
-        h = knots[k + 1] - knots[k]
-        i, j = (k, k + 1 if k + 1 < n else 0) if closed else (k + 1, k + 2)
-        after = knots[j + 1] - knots[j] if closed else (knots[j] - knots[k + 1] if k + 1 < n else 0.0)
-        whole = before + h + after
-        a, b = before / whole, (before + h) / whole
-        for axis in range(2):
-            start, end = controls[i, axis], controls[j, axis]
-            cubics[k, 1, axis] = (1.0 - a) * start + a * end
-            cubics[k, 2, axis] = (1.0 - b) * start + b * end
-        before = h
-    before = knots[n] - knots[n - 1]
-    for k in range(n):
-        h = knots[k + 1] - knots[k]
-        share = before / (before + h)
-        for axis in range(2):
-            joint = (1.0 - share) * cubics[k - 1, 2, axis] + share * cubics[k, 1, axis]
-            cubics[k, 0, axis] = cubics[k - 1, 3, axis] = joint
-        before = h
-    if not closed:
-        for axis in range(2):
-            cubics[0, 0, axis], cubics[n - 1, 3, axis] = controls[0, axis], controls[n + 2, axis]

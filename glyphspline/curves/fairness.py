@@ -34,27 +34,21 @@ Coefficients = tuple[float, ...]
 
 
 @compiled
-def curvature_extrema(cubics: FloatArray, length: float, corner: float) -> int:
+def extrema_of(values: FloatArray, n: int, least: float) -> int:
     """Number of significant extrema of the signed curvature along a closed contour: 0 of a circle, 4 of an ellipse.
 
     It is the largest number of places in order along the contour at which curvature alternately rises and falls
-    significantly: by at least ``SHARE`` of the larger of both absolute values, and by ``TURN / length``. This depends
-    neither on start, direction, place and scale nor on how the contour is cut into pieces. Lines have curvature 0,
-    joints without a corner have the two values of their sides, and a cusp that of the curve beside it.
+    significantly: by at least ``SHARE`` of the larger of both absolute values, and by ``TURN`` over the contour's
+    length. This depends neither on start, direction, place and scale nor on how the contour is cut into pieces. Lines
+    have curvature 0, joints without a corner have the two values of their sides, and a cusp that of the curve beside
+    it.
 
     Corners have no curvature. They separate stretches, whose two outermost places do not count: curvature does
     not return beyond them. A polygon has none.
 
     Args:
-        cubics: (m, 4, 2). length: of the contour. corner: cosine of the turn from which a joint is a corner.
+        values, n: of :func:`curvatures`. least: ``TURN`` over the contour's length.
     """
-    values, _, n = curvatures(cubics, length, corner)
-    return extrema_of(values, n, TURN / length)
-
-
-@compiled
-def extrema_of(values: FloatArray, n: int, least: float) -> int:
-    """Number of significant extrema among n curvatures in order, NaN at corners; ``least`` is their absolute part."""
     if n == 0:
         return 0
     start = int(np.argmax(values[:n]))  # the first corner, or else the largest of all; see ``swings``
@@ -109,6 +103,9 @@ def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatA
 
     The second array has where that is: j + t for local parameter t of piece j. Both have room to spare; the last value
     is the number of curvatures.
+
+    Args:
+        cubics: (m, 4, 2). length: of the contour. corner: cosine of the turn from which a joint is a corner.
     """
     m, n = len(cubics), 0
     values, where, places = np.empty(4 * m + MOST + 1), np.empty(4 * m + MOST + 1), np.zeros(MOST)

@@ -118,7 +118,7 @@ def pair_instances(
                 lost = arc[0]
 
 
-@compiled
+@inlined
 def room_for(V: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The arrays ``work``, ``marks`` and ``found`` of :func:`pair_span`."""
     return np.empty((2, (DEEPEST + 2 + SCRATCH) * V, 4, 2)), np.empty((DEEPEST + 2, 5)), np.zeros(3)

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import spline_beziers
 from ..curves.pairing import SHARPNESS, pair_stretches
+from ..curves.spline_beziers import spline_beziers
 from ..errors import GlyphsplineError
 from ..interpolation.api import interpolate_batch
 from ..interpolation.batch import NONE_HELD
@@ -74,25 +74,17 @@ def recorded(points: FloatArray, options: Options) -> History:
     return interpolate_any_degree(points, method, keep_history=True).history or ()
 
 
-@compiled
 def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:
     """Ragged Bézier pieces (n, K, 4, 2) of closed cubic splines in K masters, and those rounded to multiples of 1/unit.
 
     Args:
         controls: (n, 2 K). knots: those of part k begin at ``offsets[k] + k``.
     """
-    pieces = np.empty((len(controls), controls.shape[1] // 2, 4, 2))
-    written = np.empty(pieces.shape)
-    for k in range(len(offsets) - 1):
-        a, b = offsets[k], offsets[k + 1]
-        own = np.empty((b - a, 4, 2))
-        for v in range(pieces.shape[1]):
-            spline_beziers(controls[a:b, 2 * v : 2 * v + 2].copy(), knots[a + k : b + k + 1], True, own)
-            for i in range(b - a):
-                for j in range(4):
-                    for axis in range(2):
-                        pieces[a + i, v, j, axis] = own[i, j, axis]
-                        written[a + i, v, j, axis] = np.rint(own[i, j, axis] * unit) / unit
+    closed = np.ones(len(offsets) - 1, dtype=np.bool_)
+    pieces = spline_beziers(controls.reshape(len(controls), -1, 2), knots, np.diff(offsets), closed)
+    written = pieces * unit
+    np.rint(written, out=written)
+    written /= unit
     return pieces, written
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.cubics import turns
-from ..curves.fairness import TURN, curvature_extrema, curvatures, extrema_of
+from ..curves.fairness import TURN, curvatures, extrema_of
 from ..curves.integrals import area, integrals
 from ..curves.overshoot import overshoot
 from ..curves.pairing import ROUNDING
@@ -124,7 +124,8 @@ def geometry(
             cubics, written.degrees[written.offsets[c] : written.offsets[c + 1]]
         )
         length_before, _, _ = _bends(given, source.degrees[source.offsets[c] : source.offsets[c + 1]])
-        extrema[c] = curvature_extrema(contour_cubics(curves, c), length[c], CORNER)
+        values, _, n = curvatures(contour_cubics(curves, c), length[c], CORNER)
+        extrema[c] = extrema_of(values, n, TURN / length[c])
         extrema_before[c], floor[c], _, _ = extrema_floor(given, length_before)
         change[c] = area(cubics) - area(given)
         beyond[c] = overshoot(cubics, polygons[offsets[c] : offsets[c + 1]])

@@ -64,7 +64,7 @@ class Measures:
             where it has risen and then falls, or the reverse, each time by at least a tenth of the larger absolute
             value, as less is the rounding of coordinates, and by 1/length, which is one radian around the contour, as
             less is not seen. An 'o' has four, or eight if its shoulders are square. A corner that "smooth" rounds makes
-            one or more. See :func:`..curves.fairness.curvature_extrema`.
+            one or more. See :func:`..curves.fairness.extrema_of`.
         source_curvature_extrema: the same of the source contour. Sources of quadratics have many: each quadratic has a
             peak of curvature of its own.
         curvature_extrema_floor: those of the source if each corner is rounded as tightly as can be, to a peak of

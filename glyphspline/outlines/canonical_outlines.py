@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -23,94 +24,128 @@ import numpy as np
 from ..compiled import compiled
 from ..curves.cubics import jet
 from ..curves.integrals import area
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .contour_arrays import ContourArrays, joined, offsets_of
 from .ink import ink_sides
 from .outline import Contours, Outline
-from .segments import contour_cubics, lasting
+from .segments import all_cubics
 
 
 def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
     """The same shapes in the one way of storing them that this module says."""
     given = joined([outline.arrays for outline in outlines])
     glyphs = offsets_of([outline.arrays.num_contours for outline in outlines])
-    found, keys = _canonical(given, glyphs)
-    owner = np.repeat(np.arange(len(outlines)), np.diff(glyphs))
-    order = np.lexsort((*keys.T[::-1], owner))
-    order = order[np.diff(found.offsets)[order] > 0]
+    sides = np.concatenate([np.empty(0), *(ink_sides(given.part(*ends)) for ends in pairwise(glyphs.tolist()))])
+    cubics = all_cubics(given)
+    areas = _areas(cubics, given.offsets)
+    contours, kept = _distinct(given, cubics)
+    owner = np.repeat(np.arange(len(outlines)), np.diff(glyphs))[kept]
+    turned = _reversed(contours, _backward(contours, areas[kept], sides[kept]))
+    found = _rotated(turned, _first_joints(turned))
+    cubics = all_cubics(found)
+    lowest = [lower_left(cubics[first:last])[1:] for first, last in pairwise(found.offsets.tolist())]
+    lengths, low, left = np.diff(found.offsets), *np.array(lowest).reshape(-1, 2).T
+    order = np.lexsort((lengths, -np.abs(_areas(cubics, found.offsets)), left, low, owner))
+    ends = np.searchsorted(owner, np.arange(len(outlines) + 1))
     found = found.chosen(order)
-    ends = np.searchsorted(owner[order], np.arange(len(outlines) + 1))
     return [
         replace(outline, contours=Contours(found.part(first, last)))
         for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
     ]
 
 
-@compiled
-def _canonical(contours: ContourArrays, glyphs: IntArray) -> tuple[ContourArrays, FloatArray]:
-    """Contours with their start and direction by rule, in the given order.
+def _areas(cubics: FloatArray, offsets: IntArray) -> FloatArray:
+    return np.array([area(cubics[first:last]) for first, last in pairwise(offsets.tolist())])
+
+
+def _distinct(contours: ContourArrays, cubics: FloatArray) -> tuple[ContourArrays, IntArray]:
+    """Contours without segments of no length, those of three distinct points at least; and which of the given ones.
 
     Args:
-        glyphs: (G + 1,) where the contours of each glyph begin.
-
-    Returns:
-        the contours, which have no segments if they enclose nothing; (C, 4) what they are ordered by.
+        cubics: their segments.
     """
-    count = len(contours.offsets) - 1
-    points, degrees = np.empty_like(contours.points), np.empty_like(contours.degrees)
-    offsets, starts = np.zeros(count + 1, dtype=np.int64), np.zeros(count + 1, dtype=np.int64)
-    keys = np.zeros((count, 4))
-    for g in range(len(glyphs) - 1):
-        a, b = glyphs[g], glyphs[g + 1]
-        first, begin = contours.offsets[a], contours.starts[a]
-        own = ContourArrays(
-            contours.points[begin : contours.starts[b]], contours.degrees[first : contours.offsets[b]],
-            contours.offsets[a : b + 1] - first, contours.starts[a : b + 1] - begin,
-        )  # fmt: skip
-        sides = ink_sides(own)
-        for c in range(a, b):
-            offsets[c + 1], starts[c + 1] = offsets[c], starts[c]
-            cubics = contour_cubics(contours, c)
-            lasts = np.zeros(len(cubics), dtype=np.bool_)
-            lasts[lasting(cubics)] = True
-            its = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
-            p = contours.points[contours.starts[c] : contours.starts[c + 1]][np.repeat(lasts, its)]
-            if len(p) < 3:
-                continue
-            away = (p[:, 0] != p[0, 0]) | (p[:, 1] != p[0, 1])
-            q = p[np.argmax(away)]
-            if not (away & ((p[:, 0] != q[0]) | (p[:, 1] != q[1]))).any():
-                continue  # of fewer than three distinct points
-            d = its[lasts]
-            n, m = len(p), len(d)
-            backward, its = np.concatenate((p[:1], p[:0:-1])), d[::-1].copy()
-            ink, extent = area(cubics), max(np.ptp(p[:, 0]), np.ptp(p[:, 1]))
-            # Area relative to the square of a contour's extent below which its sign is rounding.
-            if abs(ink) > 1e-9 * extent * extent:
-                reverse = sides[c - a] < 0.0
-            else:
-                reverse = _compare(backward, its, _first_joint(backward, its), p, d, _first_joint(p, d)) < 0
-            if reverse:
-                p, d = backward, its
-            s = _first_joint(p, d)
-            i = np.sum(d[:s])
-            points[starts[c] : starts[c] + n] = np.concatenate((p[i:], p[:i]))
-            degrees[offsets[c] : offsets[c] + m] = np.concatenate((d[s:], d[:s]))
-            offsets[c + 1], starts[c + 1] = offsets[c] + m, starts[c] + n
-    found = ContourArrays(points[: starts[count]], degrees[: offsets[count]], offsets, starts)
-    for c in range(count):
-        if offsets[c] < offsets[c + 1]:
-            cubics = contour_cubics(found, c)
-            place = lower_left(cubics)
-            s = min(int(place), len(cubics) - 1)
-            x, y, _, _, _, _ = jet(cubics, s, place - s)
-            keys[c, 0], keys[c, 1], keys[c, 2], keys[c, 3] = x + y, x, -abs(area(cubics)), len(cubics)
-    return found, keys
+    lasts = (cubics != cubics[:, :1]).any(axis=(1, 2))
+    points, degrees = contours.points[np.repeat(lasts, contours.degrees)], contours.degrees[lasts]
+    offsets = offsets_of(lasts)[contours.offsets]
+    starts = offsets_of(degrees)[offsets]
+    owner, two = np.repeat(np.arange(contours.num_contours), np.diff(starts)), starts[:-1].copy()
+    away = np.flatnonzero((points != points[starts[owner]]).any(axis=1))
+    those, first = np.unique(owner[away], return_index=True)
+    two[those] = away[first]  # the first point of each that is not where it begins
+    third = away[(points[away] != points[two[owner[away]]]).any(axis=1)]
+    kept = np.unique(owner[third])
+    return ContourArrays(points, degrees, offsets, starts).chosen(kept), kept
+
+
+def _backward(contours: ContourArrays, areas: FloatArray, sides: FloatArray) -> BoolArray:
+    """(C,) which contours are to run the other way."""
+    if contours.num_contours == 0:
+        return np.empty(0, dtype=np.bool_)
+    low, high = (each.reduceat(contours.points, contours.starts[:-1]) for each in (np.minimum, np.maximum))
+    extents = (high - low).max(axis=1)
+    # Area relative to the square of a contour's extent below which its sign is rounding.
+    backward, flat = sides < 0.0, ~(np.abs(areas) > 1e-9 * extents * extents)
+    for c in np.flatnonzero(flat).tolist():
+        own = contours.part(c, c + 1)
+        both = own, _reversed(own, np.ones(1, dtype=np.bool_))
+        one, other = (min(_sequence(each, s) for s in range(len(each.degrees))) for each in both)
+        backward[c] = other < one
+    return backward
+
+
+def _reversed(contours: ContourArrays, which: BoolArray) -> ContourArrays:
+    """Contours, some of them in the opposite direction from the same first point."""
+    points, degrees = np.arange(len(contours.points)), np.arange(len(contours.degrees))
+    owner, of = (np.repeat(np.arange(len(which)), np.diff(each)) for each in (contours.starts, contours.offsets))
+    first, last = contours.starts[owner], contours.starts[owner + 1]
+    points = np.where(which[owner] & (points > first), first + last - points, points)
+    degrees = np.where(which[of], contours.offsets[of] + contours.offsets[of + 1] - 1 - degrees, degrees)
+    return contours._replace(points=contours.points[points], degrees=contours.degrees[degrees])
+
+
+def _first_joints(contours: ContourArrays) -> IntArray:
+    """(C,) the joint of each contour from which it begins: by what follows, if it passes there twice."""
+    offsets = contours.offsets
+    owner = np.repeat(np.arange(contours.num_contours), np.diff(offsets))
+    x, y = contours.points[offsets_of(contours.degrees)[:-1]].T
+    order = np.lexsort((x, x + y, owner))
+    first = order[offsets[:-1]]
+    as_low = np.flatnonzero((x == x[first][owner]) & (x + y == (x + y)[first][owner]))
+    count = np.bincount(owner[as_low], minlength=contours.num_contours)
+    found = first - offsets[:-1]
+    for c in np.flatnonzero(count > 1).tolist():
+        tied = as_low[owner[as_low] == c] - offsets[c]
+        found[c] = min(tied.tolist(), key=partial(_sequence, contours.part(c, c + 1)))
+    return found
+
+
+def _sequence(contour: ContourArrays, s: int) -> tuple[list[list[float]], list[int]]:
+    """What a single contour is compared by, from joint s on: x + y and x of all points, and then the degrees."""
+    x, y = np.roll(contour.points, -int(contour.degrees[:s].sum()), axis=0).T
+    return np.stack([x + y, x], axis=1).tolist(), np.roll(contour.degrees, -s).tolist()
+
+
+def _rotated(contours: ContourArrays, joints: IntArray) -> ContourArrays:
+    """Contours from these joints (C,) on."""
+    firsts = contours.offsets[:-1] + joints
+    points = contours.points[_rolled(contours.starts, offsets_of(contours.degrees)[firsts])]
+    return contours._replace(points=points, degrees=contours.degrees[_rolled(contours.offsets, firsts)])
+
+
+def _rolled(ends: IntArray, firsts: IntArray) -> IntArray:
+    """Indices of the members of parts, each part from one of its members on and around."""
+    sizes = np.diff(ends)
+    found = np.arange(ends[-1]) + np.repeat(firsts - ends[:-1], sizes)
+    return found - np.where(found >= np.repeat(ends[1:], sizes), np.repeat(sizes, sizes), 0)
 
 
 @compiled
-def lower_left(cubics: FloatArray) -> float:
-    """Place of the point of a closed chain (m, 4, 2) with the least x + y; of several the leftmost, then the first."""
+def lower_left(cubics: FloatArray) -> tuple[float, float, float]:
+    """Place of the point of a closed chain (m, 4, 2) with the least x + y; of several the leftmost, then the first.
+
+    Returns:
+        The place, and x + y and x of its point.
+    """
     best, left, place = np.inf, np.inf, 0.0
     for j in range(len(cubics)):
         p = cubics[j, 0, 0] + cubics[j, 0, 1]
@@ -134,36 +169,4 @@ def lower_left(cubics: FloatArray) -> float:
             x, y, _, _, _, _ = jet(cubics, j, at)
             if x + y < best:
                 best, left, place = x + y, x, j + at
-    return place
-
-
-@compiled
-def _first_joint(points: FloatArray, degrees: IntArray) -> int:
-    """The joint from which the contour begins: by what follows, if it passes there twice."""
-    best = 0
-    for s in range(1, len(degrees)):
-        if _compare(points, degrees, s, points, degrees, best) < 0:
-            best = s
-    return best
-
-
-@compiled
-def _compare(one: FloatArray, degrees: IntArray, s: int, other: FloatArray, its_degrees: IntArray, t: int) -> int:
-    """-1, 0 or 1: which of two contours of as many points, from its joint s or t on, is lexicographically less.
-
-    Points are compared by x + y, and then by x; contours through the same points by their degrees.
-    """
-    n, m = len(one), len(degrees)
-    i, j = np.sum(degrees[:s]), np.sum(its_degrees[:t])
-    for k in range(n):
-        ax, ay = one[(i + k) % n, 0], one[(i + k) % n, 1]
-        bx, by = other[(j + k) % n, 0], other[(j + k) % n, 1]
-        if ax + ay != bx + by:
-            return -1 if ax + ay < bx + by else 1
-        if ax != bx:
-            return -1 if ax < bx else 1
-    for k in range(m):
-        a, b = degrees[(s + k) % m], its_degrees[(t + k) % m]
-        if a != b:
-            return -1 if a < b else 1
-    return 0
+    return place, best, left

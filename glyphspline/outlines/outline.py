@@ -72,9 +72,9 @@ class Contour:
 
     def cubics(self) -> FloatArray:
         """(m, 4, 2) all segments as cubic Béziers, by exact degree elevation."""
-        from ..curves.cubics import raised  # imported here, so that the package opens without a compiler
+        from .segments import contour_cubics  # imported here, so that the package opens without a compiler
 
-        return raised(self.points, self.degrees)
+        return contour_cubics(end_to_end([(self.points, self.degrees)]), 0)
 
     def at(self, places: FloatArray) -> FloatArray:
         """(k, 2) points at (k,) places: j + x is local parameter x of segment j, and places wrap at ``len(self)``."""

@@ -62,7 +62,7 @@ def resampled(contours: ContourArrays, count: int, corner_angle: float) -> Resam
         m, at = len(cubics), c * count
         table, places, firsts = _lengths(cubics)
         total = lengths[c] = table[-1]
-        start = lower_left(cubics)
+        start, _, _ = lower_left(cubics)
         s = min(int(start), m - 1)
         k = firsts[s] + int(np.searchsorted(places[firsts[s] : firsts[s + 1]], start - s, side="right")) - 1
         first = table[k] + _length(cubics, s, places[k], start - s)

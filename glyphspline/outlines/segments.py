@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..curves.cubics import raised
 from ..types import FloatArray, IntArray
 from .contour_arrays import ContourArrays
 
@@ -14,7 +13,24 @@ from .contour_arrays import ContourArrays
 def contour_cubics(contours: ContourArrays, c: int) -> FloatArray:
     """(m, 4, 2) the segments of contour c as cubics."""
     points = contours.points[contours.starts[c] : contours.starts[c + 1]]
-    return raised(points, contours.degrees[contours.offsets[c] : contours.offsets[c + 1]])
+    degrees = contours.degrees[contours.offsets[c] : contours.offsets[c + 1]]
+    m, n = len(degrees), len(points)
+    cubics = np.empty((m, 4, 2))
+    at = 0
+    for s in range(m):
+        d = degrees[s]
+        for axis in range(2):
+            a, b = points[at, axis], points[(at + d) % n, axis]
+            cubics[s, 0, axis], cubics[s, 3, axis] = a, b
+            if d == 3:
+                cubics[s, 1, axis], cubics[s, 2, axis] = points[at + 1, axis], points[at + 2, axis]
+            elif d == 2:
+                q = points[at + 1, axis]
+                cubics[s, 1, axis], cubics[s, 2, axis] = a + (q - a) * (2 / 3), b + (q - b) * (2 / 3)
+            else:
+                cubics[s, 1, axis], cubics[s, 2, axis] = a + (b - a) / 3, b + (a - b) / 3
+        at += d
+    return cubics
 
 
 @compiled

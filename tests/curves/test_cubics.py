@@ -8,20 +8,14 @@ import pytest
 import glyphspline as gs
 from glyphspline.compiled import compiled
 from glyphspline.curves.bezier import evaluate, split
-from glyphspline.curves.cubics import bernstein, hidden_extrema, length_table, section, spline_beziers, turns
+from glyphspline.curves.cubics import bernstein, hidden_extrema, length_table, section, turns
 from glyphspline.curves.cubics import split as cut
 from glyphspline.curves.nearest import near_place, search_place
+from glyphspline.curves.spline_beziers import spline_beziers
 from glyphspline.types import FloatArray
 from tests.polygons import circle_contour, random_polygon, square_contour
 
 CUBICS = np.random.default_rng(4).uniform(-100, 100, (5, 4, 2))
-
-
-@compiled
-def form(controls: FloatArray, knots: FloatArray, closed: bool) -> FloatArray:
-    cubics = np.empty((len(knots) - 1, 4, 2))
-    spline_beziers(controls, knots, closed, cubics)
-    return cubics
 
 
 @compiled
@@ -39,7 +33,12 @@ def parts(cubic: FloatArray, x: float, y: float) -> FloatArray:
 @pytest.mark.parametrize("n", [3, 4, 11])
 def test_the_bezier_form_is_that_of_the_spline(closed: bool, n: int) -> None:
     spline = gs.interpolate(random_polygon(n, n), closed=closed).spline
-    np.testing.assert_allclose(form(spline.control_points, spline.knots, closed), spline.to_bezier(), atol=1e-11)
+    other = gs.interpolate(random_polygon(7, n), closed=not closed).spline
+    both, kinds = (other, spline), np.array([not closed, closed])
+    controls, knots = (np.concatenate(each) for each in zip(*((s.control_points, s.knots) for s in both), strict=True))
+    pieces = [s.to_bezier() for s in both]
+    form = spline_beziers(controls[:, None], knots, np.array([len(each) for each in pieces]), kinds)
+    np.testing.assert_allclose(form[:, 0], np.concatenate(pieces), atol=1e-11)
 
 
 @pytest.mark.parametrize("x", [0.0, 0.3, 1.0])

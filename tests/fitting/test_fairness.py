@@ -8,8 +8,9 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import glyphspline as gs
+from glyphspline.curves import fairness
 from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvature, split
-from glyphspline.curves.fairness import SHARE, TURN, curvature_extrema
+from glyphspline.curves.fairness import SHARE, TURN, extrema_of
 from glyphspline.fitting.measures import CORNER, extrema_floor
 from glyphspline.types import FloatArray
 from scripts.paper.measures import curvature_variation, shape
@@ -20,9 +21,14 @@ from tests.polygons import circle_contour, square_contour
 QUARTER_TURN = np.array([[0.0, 1], [-1, 0]])
 
 
+def extrema_within(cubics: FloatArray, length: float, corner: float = CORNER) -> int:
+    values, _, n = fairness.curvatures(cubics, length, corner)
+    return int(extrema_of(values, n, TURN / length if length else np.inf))
+
+
 def extrema(cubics: FloatArray) -> int:
     cubics = np.ascontiguousarray(cubics, dtype=float)
-    return int(curvature_extrema(cubics, shape(cubics).length, CORNER))
+    return extrema_within(cubics, shape(cubics).length)
 
 
 def line(a: object, b: object) -> FloatArray:
@@ -127,7 +133,7 @@ def test_the_corner_angle_decides_what_is_a_corner() -> None:
     quarter = circle(100.0, 4)[:1] * [2, 1]
     leaf = np.concatenate([quarter, [200, 100] - quarter])
     length = shape(leaf).length
-    assert [curvature_extrema(leaf, length, float(np.cos(np.radians(angle)))) for angle in (89, 91)] == [0, 4]
+    assert [extrema_within(leaf, length, float(np.cos(np.radians(angle)))) for angle in (89, 91)] == [0, 4]
 
 
 def test_jumps_at_smooth_joints_are_part_of_the_curvature() -> None:
@@ -166,8 +172,8 @@ def test_pieces_of_no_length_change_nothing() -> None:
 
 
 def test_nothing_has_none() -> None:
-    assert curvature_extrema(np.empty((0, 4, 2)), 0.0, CORNER) == 0
-    assert curvature_extrema(np.ones((3, 4, 2)), 0.0, CORNER) == 0
+    assert extrema_within(np.empty((0, 4, 2)), 0.0) == 0
+    assert extrema_within(np.ones((3, 4, 2)), 0.0) == 0
 
 
 def blob(numbers: list[int]) -> FloatArray:

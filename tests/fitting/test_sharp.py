@@ -176,7 +176,7 @@ def test_pieces_that_all_fail_become_the_source_itself() -> None:
     chains, pieces = cut(contours)
     assert (pieces.contour[0], *pieces.joints[0], pieces.closed[0]) == (0, 0, len(contours[0]), 1)
     exact, _ = refit(chains, pieces, np.ones(len(pieces.spans), dtype=np.bool_), np.empty(0), SETTINGS)
-    assembly = put_together(exact, 0, len(contours), np.empty(0), np.empty((0, 2)), chords(exact))
+    assembly = put_together(exact, 0, len(contours), np.empty((0, 4, 2)), np.empty((0, 2)), chords(exact))
     curve = assembly.curves
     unknown = np.full(len(exact.spans), np.nan)
     bounds, _, _ = certify(

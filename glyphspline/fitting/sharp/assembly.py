@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import spline_beziers
 from ...curves.nearest import near_places
 from ...curves.pairing import pair_instances
 from ...curves.slip import regular
@@ -33,24 +32,24 @@ class Assembly(NamedTuple):
 
 @compiled
 def put_together(
-    pieces: Pieces, v: int, contours: int, knots: FloatArray, controls: FloatArray, chords: FloatArray
+    pieces: Pieces, v: int, contours: int, splines: FloatArray, controls: FloatArray, chords: FloatArray
 ) -> Assembly:
     """The curves of all pieces in master v.
 
     Args:
         contours: their number.
-        knots, controls: of the splines of more than one span, one after the other: k + 1 knots each, and k + 3 control
-            points of an arc or k of a closed curve.
+        splines, controls: of the splines of more than one span, one after the other: k cubics (4, 2) each, and k + 3
+            control points of an arc or k of a closed curve.
         chords: (P,) the chord of each piece in all masters: what the tangents of an arc of one span go by.
     """
     P, arcs = len(pieces.spans), int((pieces.spans > 0).sum())
     segments = np.zeros(P + 1, dtype=np.int64)
     segments[1:] = np.cumsum(np.maximum(pieces.spans, 1))
     total = segments[P]
-    points, degrees, b = np.empty((3 * total, 2)), np.full(total, 3), np.empty((total, 4, 2))
+    points, degrees = np.empty((3 * total, 2)), np.full(total, 3)
     offsets, starts = np.zeros(contours + 1, dtype=np.int64), np.zeros(contours + 1, dtype=np.int64)
     own, ends, closed = np.empty((total + 3 * arcs, 2)), np.zeros(arcs + 1, np.int64), np.empty(arcs, np.bool_)
-    at = knot = control = arc = 0
+    at = span = control = arc = 0
     for q in range(P):
         c, k, ring, first = pieces.contour[q], pieces.spans[q], pieces.closed[q], pieces.starts[q]
         p, tau, count, end = pieces.vertices[first:, v], pieces.tangents[q, v], k + 3 * (1 - ring), ends[arc]
@@ -65,10 +64,9 @@ def put_together(
             points[at : at + 3] = own[end : end + 3]
         else:
             own[end : end + count] = controls[control : control + count]
-            spline_beziers(own[end : end + count], knots[knot : knot + k + 1], ring > 0, b[:k])
             for s in range(k):
-                points[at + 3 * s : at + 3 * s + 3] = b[s, :3]
-            knot, control = knot + k + 1, control + count
+                points[at + 3 * s : at + 3 * s + 3] = splines[span + s, :3]
+            span, control = span + k, control + count
         if k > 0:
             ends[arc + 1], closed[arc] = end + count, ring > 0
             arc += 1

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...curves.bspline import Spline
 from ...curves.pairing import SHARPNESS
+from ...curves.spline_beziers import spline_beziers
 from ...errors import PolygonError
 from ...interpolation.api import interpolate_each
 from ...interpolation.method import Method
@@ -178,9 +179,10 @@ def _certified(
     splines = dict(sorted((old | _interpolated(pieces, same < 0, options)).items()))
     knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
     stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
-    controls = np.ascontiguousarray(stacked.reshape(-1, masters, 2).swapaxes(0, 1)) * np.sqrt(masters)
-    lengths = chords(pieces)
-    made = [put_together(pieces, v, count, knots, controls[v], lengths) for v in range(masters)]
+    controls, several, lengths = stacked.reshape(-1, masters, 2) * np.sqrt(masters), pieces.spans > 1, chords(pieces)
+    beziers = spline_beziers(controls, knots, pieces.spans[several], pieces.closed[several] > 0)
+    beziers, controls = (np.ascontiguousarray(each.swapaxes(0, 1)) for each in (beziers, controls))
+    made = [put_together(pieces, v, count, beziers[v], controls[v], lengths) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
     known, kept = np.full(len(same), np.nan), same >= 0
     if before is not None and mixes is not None:

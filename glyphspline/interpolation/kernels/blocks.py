@@ -215,40 +215,37 @@ def _place_ends(given: Given, found: Found, group: Group, q: int) -> None:
 
 
 @compiled
-def follow_ends(given: Given, group: Group, P: FloatArray, slots: int) -> None:
-    """The control points beside the ends of open arcs, which follow their neighbours, and those of the ends."""
+def fill_edges(given: Given, group: Group, P: FloatArray, slots: int) -> None:
+    """Control points beyond either end of each polygon's vertices in every block, and those of the ends of arcs.
+
+    On a closed curve they repeat those around it. An open arc has one control point more, n, kept beyond the last
+    vertex in its block; those beside its ends follow their neighbours.
+    """
     d, size, table = given.points.shape[1], group.size, group.table
     for q in range(slots):
-        n, first = table[q, COUNT], table[q, LANE] + HALO
-        for end in range(2):
+        n, first = table[q, COUNT], table[q, LANE]
+        for end in range(0 if given.closed else 2):
             at, free, out = (0, 1, -1) if end == 0 else (n - 1, n - 2, 1)
-            here, by = at // LANES * size + first + at % LANES, free // LANES * size + first + free % LANES
+            here, by = (
+                at // LANES * size + first + at % LANES + HALO,
+                free // LANES * size + first + free % LANES + HALO,
+            )
             for axis in range(d):
                 step = axis * STRIDE
                 beside, weight = group.ends[4 * q + BESIDE + end, axis], group.numbers[q, NATURAL + end]
                 P[step + here] = beside + weight * P[step + by]
                 P[step + here + out] = group.ends[4 * q + LAST + end, axis]
                 P[step + here + 2 * out] = 0.0
-
-
-@compiled
-def fill_halos(given: Given, group: Group, P: FloatArray, slots: int, b: int) -> None:
-    """Copy control points beyond either end of each polygon's vertices in block b, in a ring if closed.
-
-    An open arc has one control point more, n, kept beyond the last vertex in its block.
-    """
-    d, size = given.points.shape[1], group.size
-    for q in range(slots):
-        n, first = group.table[q, COUNT], group.table[q, LANE]
-        inside = min(LANES, n - b * LANES)
-        for k in range(4):
-            to = first + (k if k < 2 else inside + k)
-            i = b * LANES + to - first - HALO
-            if given.closed:
-                i += n * (int(i < 0) - int(i >= n))
-            elif not 0 <= i <= n:
-                continue
-            owner = min(i, n - 1)
-            at = owner // LANES * size + first + owner % LANES + HALO + i - owner
-            for step in range(0, d * STRIDE, STRIDE):
-                P[b * size + to + step] = P[at + step]
+        for b in range(-(-n // LANES)):
+            inside = min(LANES, n - b * LANES)
+            for k in range(4):
+                to = first + (k if k < 2 else inside + k)
+                i = b * LANES + to - first - HALO
+                if given.closed:
+                    i += n * (int(i < 0) - int(i >= n))
+                elif not 0 <= i <= n:
+                    continue
+                owner = min(i, n - 1)
+                at = owner // LANES * size + first + owner % LANES + HALO + i - owner
+                for step in range(0, d * STRIDE, STRIDE):
+                    P[b * size + to + step] = P[at + step]

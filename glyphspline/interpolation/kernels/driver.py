@@ -24,7 +24,7 @@ from ..result import Found
 from .blocks import (
     BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT,
     LOW, NATURAL, PAD, PAIR, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, TABLE, UNCERTIFIED, UNIT, WIDTH,
-    Coordinates, Given, Group, X, fill_halos, follow_ends, lanes_used, place,
+    Coordinates, Given, Group, X, fill_edges, lanes_used, place,
 )  # fmt: skip
 from .certificate import GIVEN_UP, flagged
 from .certificate import SEARCHED as MARK
@@ -135,10 +135,8 @@ def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: 
     count, size, open_end = -(-group.table[0, COUNT] // LANES), group.size, 0 if given.closed else 1
     for q in range(slots):
         numbers[q, LARGEST] = 0.0
-    if not given.closed:
-        follow_ends(given, group, at.P, slots)
+    fill_edges(given, group, at.P, slots)
     for b in range(count):
-        fill_halos(given, group, at.P, slots, b)
         block, here, stop = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * size, (b + 1) * size
         P, Q, N = at.P[here:stop], at.Q[here:stop], at.N[here:stop]
         m = lanes_used(group, slots, b)

@@ -271,8 +271,16 @@ def one_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> t
         above 1/2, or the level is below.
     """
     right = b[1] > b[0]
-    c = b if right else a
-    peak = _hump(b[0], b[1], b[2], b[3]) if right else -_hump(a[3], a[2], a[1], a[0])
+    c0, c1, c2, c3 = (b[0], b[1], b[2], b[3]) if right else (a[3], a[2], a[1], a[0])  # away from u_i, rising
+    d0, d1, d2 = c1 - c0, c2 - c1, c3 - c2
+    square = d1 * d1 - d0 * d2
+    if d0 <= 0.0:
+        peak = 0.0
+    elif square < 0.0 or (d1 >= 0.0 and d2 > 0.0):  # fixed functions may raise the end again, where W_i is below 1/2
+        peak = 1.0
+    else:
+        peak = d0 / (d0 - d1 + np.sqrt(square))
+    c, peak = (b, peak) if right else (a, -peak)
     top = _bernstein(c[0], c[1], c[2], c[3], peak if right else peak + 1)
     level = min(0.5 + margin, share * top)
     if top <= 0.5 or level < 0.5:
@@ -291,21 +299,6 @@ def one_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> t
         start = 0.0 if b[0] >= level and not right else (peak if right else peak + 1)
         high = _crossing(c[0], c[1], c[2], c[3], level, start, 1.0) - (0.0 if after else 1.0)
     return low, high, min(max(a[0], level), max(b[3], level)), True
-
-
-@compiled
-def _hump(c0: float, c1: float, c2: float, c3: float) -> float:
-    """Where a cubic on [0, 1] that rises at 0 has its first maximum; 0 if it does not rise, 1 if it does not fall.
-
-    Fixed functions may raise its end again, where W_i is below 1/2.
-    """
-    d0, d1, d2 = c1 - c0, c2 - c1, c3 - c2
-    square = d1 * d1 - d0 * d2
-    if d0 <= 0.0:
-        return 0.0
-    if square < 0.0 or (d1 >= 0.0 and d2 > 0.0):
-        return 1.0
-    return d0 / (d0 - d1 + np.sqrt(square))
 
 
 @inlined
