@@ -52,14 +52,14 @@ def fit_cubic(
     for end in range(2):
         for axis in range(2):
             handles[end, axis] = directions[end, axis] * third
-    c, A, g, first = np.empty((3, 2)), np.empty((4, 4)), np.empty(4), np.zeros(4, dtype=np.int64)
+    samples, c, A, g, first = Q[None], np.empty((3, 2)), np.empty((4, 4)), np.empty(4), np.zeros(4, dtype=np.int64)
     best = np.inf
     for m in range(rounds):
         for axis in range(2):  # the cubic about its first end: row k of c goes with the power k + 1
             p1, p3 = handles[0, axis] * chord, Q[n - 1, axis] - Q[0, axis]
             p2 = p3 - handles[1, axis] * chord
             c[0, axis], c[1, axis], c[2, axis] = 3 * p1, 3 * (p2 - 2 * p1), p3 - 3 * (p2 - p1)
-        error = project(Q, Q[0, 0], Q[0, 1], c, x, e)
+        error = project(samples, samples, c[None], x, e)
         if error < best:
             best = error
             for end in range(2):
@@ -102,32 +102,47 @@ def limited(
 
 
 @compiled
-def project(Q: FloatArray, x0: float, y0: float, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+def project(Q: FloatArray, P: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
     """Pair the inner samples with points of a cubic, in order, from the feet x on; the largest distance.
 
+    In several masters these are at one place, which is the nearest in all of them together.
+
     Args:
-        x0, y0: where it begins. c: (3, 2) its coefficients about there; row k goes with the power k + 1.
+        Q: (K, n, 2) samples in each master. P: (K, _, 2) begins where the cubic does. c: (K, 3, 2) its coefficients
+            about there; row k goes with the power k + 1.
+        x, e: (n,) places, and largest distances: in several masters those across the cubic.
     """
-    ax, bx, cx = c[0, 0], c[1, 0], c[2, 0]
-    ay, by, cy = c[0, 1], c[1, 1], c[2, 1]
-    worst, low = 0.0, 0.0
-    for j in range(1, len(Q) - 1):
-        qx, qy = Q[j, 0] - x0, Q[j, 1] - y0
+    K, n, worst, low = len(c), Q.shape[1], 0.0, 0.0
+    for j in range(1, n - 1):
         t = max(x[j], low)
         for _ in range(4):  # Newton steps from the foot of the last round
-            px, py = ((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy
-            dx, dy = (3 * cx * t + 2 * bx) * t + ax, (3 * cy * t + 2 * by) * t + ay
-            speed = dx * dx + dy * dy
+            slope = speed = bend = 0.0
+            for v in range(K):
+                ax, bx, cx, ay, by, cy = c[v, 0, 0], c[v, 1, 0], c[v, 2, 0], c[v, 0, 1], c[v, 1, 1], c[v, 2, 1]
+                px = ((cx * t + bx) * t + ax) * t - (Q[v, j, 0] - P[v, 0, 0])
+                py = ((cy * t + by) * t + ay) * t - (Q[v, j, 1] - P[v, 0, 1])
+                dx, dy = (3 * cx * t + 2 * bx) * t + ax, (3 * cy * t + 2 * by) * t + ay
+                own = dx * dx + dy * dy
+                slope, speed = slope + (px * dx + py * dy), speed + own
+                bend = bend + own + px * (6 * cx * t + 2 * bx) + py * (6 * cy * t + 2 * by)
             if speed <= 0:
                 break
-            bend = speed + px * (6 * cx * t + 2 * bx) + py * (6 * cy * t + 2 * by)
-            new = newton_step(t, px * dx + py * dy, speed, bend, low, 1.0)
+            new = newton_step(t, slope, speed, bend, low, 1.0)
             move = abs(new - t)
             t = new
             if move < 1e-3:
                 break
-        low = x[j] = t
-        e[j] = length(((cx * t + bx) * t + ax) * t - qx, ((cy * t + by) * t + ay) * t - qy)
+        low, x[j], e[j] = t, t, 0.0
+        for v in range(K):
+            ax, bx, cx, ay, by, cy = c[v, 0, 0], c[v, 1, 0], c[v, 2, 0], c[v, 0, 1], c[v, 1, 1], c[v, 2, 1]
+            px = ((cx * t + bx) * t + ax) * t - (Q[v, j, 0] - P[v, 0, 0])
+            py = ((cy * t + by) * t + ay) * t - (Q[v, j, 1] - P[v, 0, 1])
+            away = length(px, py)
+            if K > 1:
+                dx, dy = (3 * cx * t + 2 * bx) * t + ax, (3 * cy * t + 2 * by) * t + ay
+                size = length(dx, dy)
+                away = abs(px * dy - py * dx) / size if size > 0.0 else away
+            e[j] = max(e[j], away)
         worst = max(worst, e[j])
     return worst
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
-from ...curves.cubics import length, newton_step
+from ...compiled import compiled, inlined
+from ...curves.cubics import length
 from ...curves.nearest import near_place
 from ...curves.pairing import pair_span, room_for
 from ...types import BoolArray, FloatArray
@@ -13,65 +13,24 @@ from .cubics import project
 
 
 @compiled
-def feet(p: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
-    """Pair samples with points of a cubic, see :func:`.cubics.project`, which takes it about the first sample.
-
-    Args:
-        c: (3, 2) receives the cubic's coefficients. x, e: (n,) places on it, and distances.
-    """
-    for axis in range(2):
-        c[0, axis] = 3 * (p[1, axis] - p[0, axis])
-        c[1, axis] = 3 * (p[2, axis] - 2 * p[1, axis] + p[0, axis])
-        c[2, axis] = p[3, axis] - p[0, axis] - 3 * (p[2, axis] - p[1, axis])
-    return project(Q, p[0, 0], p[0, 1], c, x, e)
-
-
-@compiled
 def shared_feet(P: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
-    """Pair samples (K, n, 2) with the points of cubics (K, 4, 2) at the same places in all masters; see :func:`feet`.
+    """Pair samples (K, n, 2) with points of a cubic (K, 4, 2) in K masters, see :func:`.cubics.project`.
 
     Args:
-        c: (K, 3, 2) receives the cubics' coefficients. e: (n,) the largest distances; in several masters across them.
+        c: (K, 3, 2) receives the cubic's coefficients.
     """
-    K, n, low, worst = len(P), Q.shape[1], 0.0, 0.0
-    if K == 1:
-        return feet(P[0], Q[0], c[0], x, e)
-    for v in range(K):
+    for v in range(len(P)):
         for axis in range(2):
-            a, b, d, f = P[v, 0, axis], P[v, 1, axis], P[v, 2, axis], P[v, 3, axis]
-            c[v, 0, axis], c[v, 1, axis], c[v, 2, axis] = 3 * (b - a), 3 * (d - 2 * b + a), f - a - 3 * (d - b)
-    for j in range(1, n - 1):
-        t = max(x[j], low)
-        for _ in range(4):
-            slope = speed = bend = 0.0
-            for v in range(K):
-                for axis in range(2):
-                    c1, c2, c3 = c[v, 0, axis], c[v, 1, axis], c[v, 2, axis]
-                    off = ((c3 * t + c2) * t + c1) * t + P[v, 0, axis] - Q[v, j, axis]
-                    d = (3 * c3 * t + 2 * c2) * t + c1
-                    slope, speed, bend = slope + off * d, speed + d * d, bend + off * (6 * c3 * t + 2 * c2)
-            if speed <= 0:
-                break
-            new = newton_step(t, slope, speed, speed + bend, low, 1.0)
-            move = abs(new - t)
-            t = new
-            if move < 1e-3:
-                break
-        low, x[j], e[j] = t, t, 0.0
-        for v in range(K):
-            x0, y0, size = P[v, 0, 0] - Q[v, j, 0], P[v, 0, 1] - Q[v, j, 1], 0.0
-            px, py = (
-                ((c[v, 2, 0] * t + c[v, 1, 0]) * t + c[v, 0, 0]) * t + x0,
-                ((c[v, 2, 1] * t + c[v, 1, 1]) * t + c[v, 0, 1]) * t + y0,
-            )
-            dx, dy = (
-                (3 * c[v, 2, 0] * t + 2 * c[v, 1, 0]) * t + c[v, 0, 0],
-                (3 * c[v, 2, 1] * t + 2 * c[v, 1, 1]) * t + c[v, 0, 1],
-            )
-            size = length(dx, dy)
-            e[j] = max(e[j], abs(px * dy - py * dx) / size if size > 0.0 else length(px, py))
-        worst = max(worst, e[j])
-    return worst
+            c[v, 0, axis] = 3 * (P[v, 1, axis] - P[v, 0, axis])
+            c[v, 1, axis] = 3 * (P[v, 2, axis] - 2 * P[v, 1, axis] + P[v, 0, axis])
+            c[v, 2, axis] = P[v, 3, axis] - P[v, 0, axis] - 3 * (P[v, 2, axis] - P[v, 1, axis])
+    return project(Q, P, c, x, e)
+
+
+@inlined
+def feet(p: FloatArray, Q: FloatArray, c: FloatArray, x: FloatArray, e: FloatArray) -> float:
+    """The same of samples (n, 2) and a cubic (4, 2) in one master, with coefficients (3, 2)."""
+    return shared_feet(p[None], Q[None], c[None], x, e)
 
 
 @compiled
