@@ -117,7 +117,12 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
     r, P = len(run.P), run.P
     nodes = r if run.closed else r + 1
     align(run)
-    n = 5 * nodes
+    # Nodes between cubics that are held have no unknowns: after the first try these are most.
+    number, n = np.full(nodes, -1), 0
+    for k in range(nodes):
+        after, before = sides(run, k)
+        if after >= 0 or before >= 0:
+            number[k], n = n, n + 5
     A, g, first = np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64)
     for k in range(n if not run.closed else n - 10):  # the last two nodes of a closed run go with the first
         first[k] = max(0, 5 * (k // 5 - 2))
@@ -147,16 +152,16 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
             own[:] = 0.0
             add_samples(P[s], c, Q, x[a:b], weight[a:b], J, tolerance, own)
             for q in range(10):
-                at = 5 * u + q if q < 5 else 5 * v + q - 5
+                at = number[u] + q if q < 5 else number[v] + q - 5
                 g[at] += own[q, 10]
                 for p in range(q + 1):
-                    to = 5 * u + p if p < 5 else 5 * v + p - 5
+                    to = number[u] + p if p < 5 else number[v] + p - 5
                     A[max(at, to), min(at, to)] += own[q, p]
         for s in range(r if run.closed else r - 1):  # the joint between cubic s and the next
-            add_joint(run, s, em, A, g, nodes, run.ease[s + 1] * min(1.0, 0.25 + 0.25 * m))
-        damp(run, A, tolerance)
+            add_joint(run, s, em, A, g, number, run.ease[s + 1] * min(1.0, 0.25 + 0.25 * m))
+        damp(run, A, number, tolerance)
         solve(A, g, first, n)
-        if not moved(run, g, tolerance):
+        if not moved(run, g, number, tolerance):
             break
 
 
@@ -179,7 +184,7 @@ def align(run: Run) -> None:
 
 
 @compiled
-def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, nodes: int, share: float) -> None:
+def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, number: IntArray, share: float) -> None:
     """The equation of the joint after cubic s: its two curvatures are to be the same, unless one has no handle."""
     r = len(run.P)
     q = (s + 1) % r
@@ -191,6 +196,7 @@ def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, nodes: 
     if not abs(one) + abs(other) < np.inf:
         return
     # Unknowns of three nodes: where cubic s begins, the joint, and where the next cubic ends.
+    nodes = len(number)
     i, k, j = s, (s + 1) % nodes, (s + 2) % nodes
     spread, D = np.zeros((6, 2, 15)), np.zeros((2, 2, 5))  # the last three points before, and the first three behind
     if not run.held[s]:
@@ -236,29 +242,40 @@ def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, nodes: 
     gap = -(other - one) / most
     w = share / (JUMP * JUMP)
     for u in range(15):
-        at = 5 * (i if u < 5 else k if u < 10 else j) + u % 5
+        if row[u] == 0.0:
+            continue
+        at = number[i if u < 5 else k if u < 10 else j] + u % 5
         g[at] += w * row[u] * gap
         for v in range(15):
-            to = 5 * (i if v < 5 else k if v < 10 else j) + v % 5
-            if to <= at:
+            to = number[i if v < 5 else k if v < 10 else j] + v % 5
+            if row[v] != 0.0 and to <= at:
                 A[at, to] += w * row[u] * row[v]
 
 
 @compiled
-def damp(run: Run, A: FloatArray, tolerance: float) -> None:
+def damp(run: Run, A: FloatArray, number: IntArray, tolerance: float) -> None:
     """Small steps where the equations leave a choice; unknowns that move nothing stay 0."""
-    nodes = len(A) // 5
-    for k in range(nodes):
+    for k, at in enumerate(number):
+        if at < 0:
+            continue
         a, b = handles_at(run, k)
         size = max(min(a, b), tolerance)
-        A[5 * k, 5 * k] += 0.02 / (0.2 * size) ** 2
-        A[5 * k + 1, 5 * k + 1] += 0.02 / tolerance**2
-        A[5 * k + 2, 5 * k + 2] += 0.02 / 0.03**2
+        A[at, at] += 0.02 / (0.2 * size) ** 2
+        A[at + 1, at + 1] += 0.02 / tolerance**2
+        A[at + 2, at + 2] += 0.02 / 0.03**2
         for side, own in ((3, a), (4, b)):
-            A[5 * k + side, 5 * k + side] += 0.02 / (0.2 * max(own, tolerance)) ** 2
+            A[at + side, at + side] += 0.02 / (0.2 * max(own, tolerance)) ** 2
         if run.kind[k] == FIXED:
             for side in range(5):
-                A[5 * k + side, 5 * k + side] += 0.02 / (0.2 * max(a, b, tolerance)) ** 2
+                A[at + side, at + side] += 0.02 / (0.2 * max(a, b, tolerance)) ** 2
+
+
+@compiled
+def sides(run: Run, k: int) -> tuple[int, int]:
+    """The cubics after and before a node that move; -1 where there is none."""
+    r = len(run.P)
+    after, before = k if k < r else -1, k - 1 if k > 0 else (r - 1 if run.closed else -1)
+    return -1 if after < 0 or run.held[after] else after, -1 if before < 0 or run.held[before] else before
 
 
 @compiled
@@ -272,18 +289,15 @@ def handles_at(run: Run, k: int) -> tuple[float, float]:
 
 
 @compiled
-def moved(run: Run, g: FloatArray, tolerance: float) -> bool:
+def moved(run: Run, g: FloatArray, number: IntArray, tolerance: float) -> bool:
     """Move all nodes by their unknowns; whether anything moved by more than a tenth of a step of the grid."""
     r, P = len(run.P), run.P
-    nodes, most = len(g) // 5, 0.0
-    for k in range(nodes):
-        a, b = handles_at(run, k)
-        after, before = k if k < r else -1, k - 1 if k > 0 else (r - 1 if run.closed else -1)
-        if after >= 0 and run.held[after]:
-            after = -1
-        if before >= 0 and run.held[before]:
-            before = -1
-        y = g[5 * k : 5 * k + 5]
+    most = 0.0
+    for k, at in enumerate(number):
+        if at < 0:
+            continue
+        (a, b), (after, before) = handles_at(run, k), sides(run, k)
+        y = g[at : at + 5]
         kind = run.kind[k]
         if kind == FIXED:
             for end, s in ((0, after), (1, before)):

@@ -18,7 +18,7 @@ from ...compiled import compiled
 from ...curves.cubics import hidden_extrema, length
 from ...types import FloatArray
 from .corners import Joints
-from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, arriving_curvature, end_jump, leaving_curvature
+from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, arriving_curvature, end_jump, leaving_curvature, sides
 from .nearness import feet, reduced, sample_form, squares
 
 SWEEPS = 4
@@ -72,11 +72,7 @@ def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
     for _ in range(SWEEPS):
         later[:] = False
         for k in range(nodes):
-            after, before = k if k < r else -1, k - 1 if k > 0 else (r - 1 if run.closed else -1)
-            if after >= 0 and run.held[after]:
-                after = -1
-            if before >= 0 and run.held[before]:
-                before = -1
+            after, before = sides(run, k)
             if (after < 0 and before < 0) or not waiting[k]:
                 continue
             waiting[k] = False
