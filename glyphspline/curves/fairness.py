@@ -120,7 +120,8 @@ def curvatures(cubics: FloatArray, length: float, corner: float) -> tuple[FloatA
         size = size_of(cubics, j)
         if not size > least:
             continue
-        values, where = grown(values, n + MOST + 1), grown(where, n + MOST + 1)
+        if n + MOST + 1 > len(values):
+            values, where = grown(values, n + MOST + 1), grown(where, n + MOST + 1)
         bx, by, x, y = directions(cubics, j, least)
         if ax * bx + ay * by <= corner * np.sqrt((ax * ax + ay * ay) * (bx * bx + by * by)):
             values[n], where[n] = np.nan, j

@@ -221,7 +221,7 @@ class _Search:
         if not rounds:
             return
         parts = [self.uneven(found, keep) for found, keep in rounds.values()]
-        counts, before, most, limits, controls, knots, parameters, held, *columns = map(
+        counts, before, surplus, most, limits, controls, knots, parameters, held, *columns = map(
             np.concatenate, zip(*parts, strict=True)
         )
         trial = steps.Trial(*columns)._replace(offsets=offsets_of(counts))
@@ -229,12 +229,14 @@ class _Search:
         for _ in range(fairing.TRIES):
             if len(before) == 0:
                 break
-            fairing.fair(self.contours, trial, controls, knots, parameters, held, limits, again, self.near, moved)
+            fairing.fair(
+                self.contours, trial, controls, knots, parameters, held, surplus, limits, again, self.near, moved
+            )
             done = self.run(trial.which, trial.places, trial.offsets, moved, known)
             if len(done.pieces) < len(moved):  # vertices fell together
                 break
             known, starts = done.trial, trial.offsets[:-1]
-            extrema, peaks, _ = fairing.bends(
+            extrema, _, peaks, _ = fairing.bends(
                 self.contours, trial, done.pieces, np.ones(len(before), dtype=np.bool_), False
             )
             good = (done.most <= self.near) & (np.maximum.reduceat(peaks, starts) <= most).all(axis=1)
@@ -243,8 +245,8 @@ class _Search:
                 self.kept[int(trial.which[n])] = done, n
             again = fairing.lowered(limits, trial.offsets, done.trial.bounds, self.near, peaks, most)
             left = ~good & np.logical_or.reduceat(again, starts).any(axis=1)
-            every = (before, most, limits, again, moved, controls, knots, parameters, held, *known, *trial)
-            before, most, limits, again, moved, controls, knots, parameters, held, *columns = steps.chosen(
+            every = (before, surplus, most, limits, again, moved, controls, knots, parameters, held, *known, *trial)
+            before, surplus, most, limits, again, moved, controls, knots, parameters, held, *columns = steps.chosen(
                 every, trial.offsets, left
             )
             known, trial = steps.Trial(*columns[:9]), steps.Trial(*columns[9:])
@@ -253,19 +255,20 @@ class _Search:
         """What :meth:`fair` begins with, of the contours that are to be faired among some of a round.
 
         Returns:
-            Numbers of vertices, extrema, largest curvature allowed, limits, and columns of splines and of the trial.
+            Numbers of vertices, extrema, those beyond the floor, largest curvature allowed, limits, and columns of
+            splines and of the trial.
         """
         trial, arrays = found.trial, found.found.arrays
-        extrema, peaks, uneven = fairing.bends(self.contours, trial, found.pieces, keep, True)
+        extrema, surplus, peaks, uneven = fairing.bends(self.contours, trial, found.pieces, keep, True)
         starts, counts = trial.offsets[:-1], np.diff(trial.offsets)
         most = fairing.PEAK * np.maximum.reduceat(peaks, starts)
         limits = np.where(uneven, fairing.LIMIT * self.near, 0.0)
         held = found.held if len(found.held) else np.zeros(len(found.pieces), dtype=np.bool_)
         columns = (
-            counts, extrema.sum(axis=1), most, limits, arrays.controls, arrays.knots, arrays.parameters, held, *trial
+            counts, extrema.sum(axis=1), surplus, most, limits, arrays.controls, arrays.knots, arrays.parameters, held,
+            *trial,
         )  # fmt: skip
-        keep = np.logical_or.reduceat(uneven, starts).any(axis=1) & (counts >= fairing.FEWEST)
-        return steps.chosen(columns, trial.offsets, keep)
+        return steps.chosen(columns, trial.offsets, np.add.reduceat(uneven.any(axis=1), starts) > 0)
 
     def attempt(self, which: IntArray, places: FloatArray, offsets: IntArray) -> Round:
         """Interpolate contours through their points at places, measure, and keep improvements."""
