@@ -16,6 +16,9 @@ EXACT = 1e-9
 LONG = 20.0
 """Chord of a curve, in thousandths of an em, from which its curvature is to meet its neighbour's."""
 
+SMOOTH = 12.0
+"""Degrees from which a joint ends an arc, whose curves may slip along each other."""
+
 MIDWAY = 1e-6
 """Distance from midway between two control points of quadratics up to which a point is implied by them."""
 
@@ -75,8 +78,11 @@ class Layout:
         """(5,) numbers of the points two before a joint to two behind it."""
         return np.arange(self.starts[joint] - 2, self.starts[joint] + 3) % self.points.shape[1]
 
-    def free(self, joint: int, far: bool, node: bool) -> list[int]:
-        """Numbers of the points that may move for a joint: its handles, those at the other ends, the node."""
+    def free(self, joint: int, far: int, node: bool) -> list[int]:
+        """Numbers of the points that may move for a joint: its handles, those at the other ends, the node.
+
+        With ``far`` of 2 the smooth joints at the other ends move, too, and so do their handles.
+        """
         at, count = int(self.starts[joint]), self.points.shape[1]
         found = [at] if node else []
         for side, degree in ((-1, self.degrees[joint - 1]), (1, self.degrees[joint])):
@@ -86,4 +92,8 @@ class Layout:
                 found.append((at + 2 * side) % count)
             if far and degree == 2 and self.implied[(at + 2 * side) % count]:
                 found.append((at + 3 * side) % count)
-        return found
+        if far == 2:
+            for other in ((joint - 1) % len(self.degrees), (joint + 1) % len(self.degrees)):
+                if np.abs(self.turns[:, other]).max() < SMOOTH:
+                    found += self.free(other, 0, True)
+        return [point for point in found if not self.implied[point]]

@@ -60,7 +60,7 @@ class Way(NamedTuple):
             that kinks hide are to vanish.
     """
 
-    far: bool
+    far: int
     node: bool
     small: bool
     exact: bool
@@ -69,9 +69,9 @@ class Way(NamedTuple):
 
 WAYS = [
     Way(far, node, small, exact, meets)
-    for exact, meets in ((True, True), (True, False), (False, True), (False, False))
     for small in (True, False)
-    for far, node in ((False, False), (False, True), (True, True))
+    for exact, meets in ((True, True), (True, False), (False, True), (False, False))
+    for far, node in ((0, False), (0, True), (1, True), (2, True))
 ]
 
 

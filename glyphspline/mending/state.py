@@ -14,10 +14,12 @@ from ..checks.finding import Measured
 from ..checks.kinds import KINDS, Thresholds
 from ..checks.on_axes import OF_CONTOURS, on_axes
 from ..checks.turns import joint_controls, largest_turns, turns_of
+from ..curves.nearest import near_places
 from ..curves.pairing import SHARPNESS, pair_instances
 from ..outlines.contour_arrays import offsets_of
 from ..outlines.masters import MasterContour, Masters
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
+from .joints import SMOOTH
 
 STEPS = 8
 """Steps of each axis, at whose ends findings other than kinks are looked for besides the masters."""
@@ -28,8 +30,8 @@ DIGITS = 3
 INSIDE = 6
 """Parts of an interval of an axis between two ticks, at whose ends turns are bounded."""
 
-SMOOTH = 12.0
-"""Degrees from which a joint ends an arc, whose curves may slip along each other."""
+HALVINGS = 8
+"""How often parts of the design space are halved in which curves are near, but not certified to be."""
 
 
 Key = tuple[int, int, int, int]
@@ -120,13 +122,14 @@ class Design(NamedTuple):
     """What holds for all joints of a glyph.
 
     Attributes:
-        corners: (V, K) weights of the masters, between which every location lies. ticks: of each axis (T, K), between
-            which weights are linear along it. places: (L, K) the masters and places on the axes and on pairs of them.
+        grid: (…, K) weights of the masters at the corners of the design space's grid, a dimension for each axis, between
+            which every location lies. ticks: of each axis (T, K), between which weights are linear along it.
+        places: (L, K) the masters and places on the axes and on pairs of them.
         step: of the grid of points, whole units or the source's decimals. tolerance: in font units.
         em: font units in an em. thresholds: of findings.
     """
 
-    corners: FloatArray
+    grid: FloatArray
     ticks: list[FloatArray]
     places: FloatArray
     step: float
@@ -142,14 +145,19 @@ class Design(NamedTuple):
         for a in axes:
             along.append(masters.weights_at(masters.ticks(a)[:, None] * unit[a]))
             places.append(_refined(masters.ticks(a), INSIDE)[:, None] * unit[a])
-        corners, weights = np.ones((1, 1)), np.ones((1, 1))
+        grid, weights = np.ones(1), np.ones((1, 1))
         if axes:
             weights = masters.weights_at(np.unique(np.concatenate(places), axis=0))
-            corners = masters.weights_at(masters.grid())
+            grid = masters.weights_at(masters.grid()).reshape(*(len(masters.ticks(a)) for a in axes), -1)
         every = np.concatenate([np.zeros(1), *(contour.points.ravel() for contour in masters.contours)])
         digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
         step, em = step or float(10.0 ** -next(digits, DIGITS)), float(masters.metrics.units_per_em)
-        return cls(corners, along, weights, step, tolerance, em, thresholds)
+        return cls(grid, along, weights, step, tolerance, em, thresholds)
+
+    @property
+    def corners(self) -> FloatArray:
+        """(V, K) the grid's corners."""
+        return self.grid.reshape(-1, self.grid.shape[-1])
 
     def largest_turns(self, controls: FloatArray) -> FloatArray:
         """(n,) degrees by which joints (K, n, 2, 4, 2) turn at most, in the masters and along each axis: exact."""
@@ -171,26 +179,92 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
 
     Args:
         anchors: (m + 1, 2) where the new segments begin on the new and on the old contour; by default the two have the
-            same segments.
+            same segments, and a joint is paired with the place that it slid to.
     """
-    m, count = len(new), len(design.corners)
-    one, other = (np.tensordot(design.corners, contour.cubics(), axes=1) for contour in (old, new))  # (V, m, 4, 2)
-    bounds, gaps = np.full(m, np.nan), np.zeros(m)
-    if anchors is None:
-        anchors = np.repeat(np.arange(m + 1.0)[:, None], 2, axis=1)
-        bounds[(one == other).all(axis=(0, 2, 3))] = 0.0
-    arcs = arcs_of(old, new) if count > 1 and m == len(old) else np.empty((0, 4))
-    rows = [np.ascontiguousarray(np.swapaxes(each, 0, 1).reshape(-1, 4, 2)) for each in (other, one)]
-    changed = np.flatnonzero(np.isnan(bounds))
-    for own in changed[:, None] if len(arcs) else [changed]:  # of an arc only the first one beyond is measured well
-        bound = np.zeros(m)
-        bound[own] = np.nan
-        pair_instances(
-            count, rows[0], offsets_of([m]), rows[1], offsets_of([len(old)]), anchors, offsets_of([m + 1]),
-            arcs, SHARPNESS * design.tolerance, design.tolerance, bound, gaps,
-        )  # fmt: skip
-        bounds[own] = bound[own]
+    one, other = old.cubics(), new.cubics()
+    if anchors is not None:
+        bounds = np.full(len(new), np.nan)
+        _measure(design.corners, one, other, anchors, np.empty((0, 4)), design.tolerance, bounds)
+        return bounds
+    bounds = np.zeros(len(new))
+    arcs = arcs_of(old, new)
+    moved = np.flatnonzero((one != other).any(axis=(0, 2, 3)))
+    boxes = [(design.grid, moved, 0)]
+    while boxes:
+        grid, own, halvings = boxes.pop()
+        corners = grid.reshape(-1, grid.shape[-1])
+        seen = _seen(corners, one, other, own, design.tolerance)
+        found = _between(corners, one, other, own, arcs, design.tolerance) if len(corners) > 1 else seen
+        far = ~(found <= design.tolerance)
+        again = far & (seen <= design.tolerance) & (halvings < HALVINGS)
+        bounds[own] = np.maximum(bounds[own], np.where(again, 0.0, found))
+        if again.any():
+            boxes += [(half, own[again], halvings + 1) for half in _halves(grid, new.points - old.points)]
     return bounds
+
+
+def _halves(grid: FloatArray, moves: FloatArray) -> list[FloatArray]:
+    """The two parts of a grid of the design space, cut across the axis along which moves (K, N, 2) differ most."""
+    axes = range(grid.ndim - 1)
+    axis = max(axes, key=lambda a: np.abs(np.diff(grid, axis=a) @ moves.reshape(len(moves), -1)).max(initial=-1.0))
+    at = np.moveaxis(grid, axis, 0)
+    if len(at) == 2:
+        at = np.stack([at[0], at.mean(axis=0), at[1]])
+    half = len(at) // 2
+    return [np.moveaxis(part, 0, axis) for part in (at[: half + 1], at[half:])]
+
+
+def _seen(corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, tolerance: float) -> FloatArray:
+    """(s,) certified bounds of segments at single locations (V, K), the largest of all of them."""
+    found = np.zeros(len(own))
+    for weights in corners:
+        bounds = np.zeros(new.shape[1])
+        bounds[own] = np.nan
+        _measure(weights[None], old, new, _anchors(weights[None], old, new), np.empty((0, 4)), tolerance, bounds)
+        found = np.maximum(found, bounds[own])
+    return found
+
+
+def _between(
+    corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, arcs: FloatArray, tolerance: float
+) -> FloatArray:
+    """(s,) certified bounds of segments at every location between some (V, K)."""
+    anchors, found = _anchors(corners, old, new), np.zeros(len(own))
+    for n, segment in enumerate(own):
+        bounds = np.zeros(new.shape[1])
+        bounds[segment] = np.nan
+        _measure(corners, old, new, anchors, arcs, tolerance, bounds)
+        found[n] = bounds[segment]
+    return found
+
+
+def _anchors(corners: FloatArray, old: FloatArray, new: FloatArray) -> FloatArray:
+    """(m + 1, 2) where new segments begin on the new contour, and near which place of the old one, in all corners."""
+    m = new.shape[1]
+    places = np.arange(float(m))
+    moved = (old[:, :, 0] != new[:, :, 0]).any(axis=(0, 2))
+    if moved.any():
+        one, other = (_rows(corners, each) for each in (old, new))
+        near_places(len(corners), one, places, other, True, 0.0, 0.0, places)
+    places = np.where(moved, places, np.arange(m))
+    return np.column_stack([np.arange(m + 1.0), np.append(places, places[0] + m)])
+
+
+def _rows(corners: FloatArray, cubics: FloatArray) -> FloatArray:
+    """(m V, 4, 2) segments (K, m, 4, 2) at locations (V, K), those of a segment after each other."""
+    return np.ascontiguousarray(np.swapaxes(np.tensordot(corners, cubics, axes=1), 0, 1).reshape(-1, 4, 2))
+
+
+def _measure(
+    corners: FloatArray, old: FloatArray, new: FloatArray, anchors: FloatArray, arcs: FloatArray, tolerance: float,
+    bounds: FloatArray,
+) -> None:  # fmt: skip
+    """Write the bounds that are NaN; see :func:`.pair_instances`."""
+    m = len(bounds)
+    pair_instances(
+        len(corners), _rows(corners, new), offsets_of([m]), _rows(corners, old), offsets_of([old.shape[1]]), anchors,
+        offsets_of([m + 1]), arcs, SHARPNESS * tolerance, tolerance, bounds, np.zeros(m),
+    )  # fmt: skip
 
 
 def arcs_of(contour: MasterContour, other: MasterContour) -> FloatArray:
