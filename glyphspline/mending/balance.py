@@ -42,13 +42,13 @@ SETTLED = 1e-3
 SOFT = 1e-9
 """Share of the dual's diagonal that is added to it, as bounds may contradict each other."""
 
-ALONG = ((12.0, 4), (np.inf, 2))
+ALONG = ((20.0, 8), (np.inf, 3))
 """Steps along its curve by which a point is put elsewhere, by the length of its shortest handle, in steps, too."""
 
 ACROSS = 1.0
 """Steps by which that is across the curve at most."""
 
-TRIED = 96
+TRIED = 200
 """Places of the points around a joint, those that seem best, for which all its bounds are computed."""
 
 AS_FOUND = 4.0

@@ -44,8 +44,9 @@ class GlyfContours(Stored):
         drawn = self._drawn(self._coordinates, [each.coordinates for each in self._given])
         self._lefts = drawn[:, -PHANTOMS, 0].copy()
         self._points = self._outline(drawn)
-        stored = [quadratics(self._points[:, a:b], self._on[a:b])[:2] for a, b in self._spans]
-        owns, why = matched(glyph, stored)
+        whole = [quadratics(self._points[:, a:b], self._on[a:b])[:2] for a, b in self._spans]
+        self._singles = [singles(*each) for each in whole]
+        owns, why = matched(glyph, [singled(*each, own) for each, own in zip(whole, self._singles, strict=True)])
         if 0 in self._numbers or len(set(self._numbers)) < len(self._numbers):
             why = dict.fromkeys(range(len(glyph.contours)), REGIONS)
         super().__init__(owns, why)
@@ -56,8 +57,8 @@ class GlyfContours(Stored):
         every = [*map(tuple, default.tolist()), *self._coordinates[-PHANTOMS:]]
         points = self._outline(self._drawn(every, deltas))
         contours = list(new.contours)
-        for a, b, index in self._others(new):
-            contours[index] = MasterContour(*quadratics(points[:, a:b], self._on[a:b])[:2])
+        for a, b, index, own in self._others(new):
+            contours[index] = MasterContour(*singled(*quadratics(points[:, a:b], self._on[a:b])[:2], own))
         return replace(new, contours=contours)
 
     def put(self, new: Masters) -> None:
@@ -68,11 +69,11 @@ class GlyfContours(Stored):
             changed = [TupleVariation(each.axes, own) for each, own in zip(self._given, deltas, strict=True)]
             self._gvar.put(self._gid, changed)
 
-    def _others(self, new: Masters) -> Iterator[tuple[int, int, int]]:
-        """Of contours that are others in ``new`` the first and last point, and the number in the outline."""
-        for (a, b), index in zip(self._spans, self.owns, strict=True):
+    def _others(self, new: Masters) -> Iterator[tuple[int, int, int, IntArray]]:
+        """Of contours that are others in ``new`` the first and last point, the number in the outline, and singles."""
+        for (a, b), index, own in zip(self._spans, self.owns, self._singles, strict=True):
             if index is not None and new.contours[index] is not self._glyph.contours[index]:
-                yield a, b, index
+                yield a, b, index, own
 
     def _drawn(self, coordinates: Sequence[tuple[int, int]], deltas: Sequence[Deltas]) -> FloatArray:
         """(K, n, 2) points of all masters, phantoms too."""
@@ -91,8 +92,8 @@ class GlyfContours(Stored):
     def _moved(self, new: Masters) -> tuple[IntArray, list[Deltas]]:
         """(n, 2) the default's coordinates, and of each variation the deltas."""
         whole, changed = self._points.copy(), np.zeros(len(self._on), dtype=bool)
-        for a, b, index in self._others(new):
-            whole[:, a:b] = as_points(new.contours[index].points, self._on[a:b])
+        for a, b, index, own in self._others(new):
+            whole[:, a:b] = as_points(new.contours[index].points[:, own], self._on[a:b])
             changed[a:b] = (np.abs(whole[:, a:b] - self._points[:, a:b]) > NEAR).any(axis=(0, 2))
         whole[:, :, 0] += self._lefts[:, None]
         wanted = np.einsum("kj,jnc->knc", np.linalg.inv(self._scalars), whole)
@@ -106,6 +107,24 @@ class GlyfContours(Stored):
                     own[a:b] = given_deltas(own[a:b], changed[a:b], steps[k, a:b], wanted[k, a:b], default[a:b])
             found.append(own)
         return default, found
+
+
+def singles(points: FloatArray, degrees: IntArray) -> IntArray:
+    """(N,) which point of a contour (K, N, 2) each one is if those that are there more than once count once."""
+    starts = np.cumsum(degrees) - degrees
+    behind = points[:, (starts + 1) % points.shape[1]]
+    again = (degrees == 1) & (np.abs(behind - points[:, starts]).max(axis=(0, 2)) <= NEAR)
+    kept = np.ones(points.shape[1], dtype=np.int64)
+    kept[starts[again]] = 0
+    numbers: IntArray = (np.cumsum(kept) - kept) % max(kept.sum(), 1)
+    return numbers
+
+
+def singled(points: FloatArray, degrees: IntArray, numbers: IntArray) -> tuple[FloatArray, IntArray]:
+    """The points and degrees of a contour without those that are there again; see :func:`singles`."""
+    last = np.roll(numbers, -1) != numbers
+    starts = np.cumsum(degrees) - degrees
+    return points[:, last], degrees[last[starts] | (degrees > 1)]
 
 
 def as_points(whole: FloatArray, on: BoolArray) -> FloatArray:
