@@ -95,22 +95,31 @@ def turns_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
     by_a, by_b = (_turned(v) / (v * v).sum(axis=-1, keepdims=True) for v in (a, b))
     none = np.zeros_like(a)
-    return np.arctan2(cross(a, b), (a * b).sum(axis=-1)), np.stack([none, by_a, -by_a - by_b, by_b, none], axis=-2)
+    return _turns(points), np.stack([none, by_a, -by_a - by_b, by_b, none], axis=-2)
+
+
+def _turns(points: FloatArray) -> FloatArray:
+    """The turns alone."""
+    a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
+    return np.arctan2(cross(a, b), (a * b).sum(axis=-1))
 
 
 def jumps_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
     """(…,) by how much curvature is larger behind joints (…, 5, 2) of cubics than before, and derivatives (…, 5, 2)."""
-    before, by_before = _curvature(points[..., 2::-1, :])
-    behind, by_behind = _curvature(points[..., 2:, :])
     slopes = np.zeros_like(points)
-    slopes[..., 2::-1, :] = by_before
-    slopes[..., 2:, :] += by_behind
-    return behind + before, slopes
+    slopes[..., 2::-1, :] = _curvature_slopes(points[..., 2::-1, :])
+    slopes[..., 2:, :] += _curvature_slopes(points[..., 2:, :])
+    return _jumps(points), slopes
+
+
+def _jumps(points: FloatArray) -> FloatArray:
+    """The jumps alone."""
+    return _curvature(points[..., 2:, :]) + _curvature(points[..., 2::-1, :])
 
 
 def curvatures_at(points: FloatArray) -> FloatArray:
     """(2, …) curvatures before and behind joints (…, 5, 2) of cubics."""
-    return np.stack([-_curvature(points[..., 2::-1, :])[0], _curvature(points[..., 2:, :])[0]])
+    return np.stack([-_curvature(points[..., 2::-1, :]), _curvature(points[..., 2:, :])])
 
 
 def _turned(v: FloatArray) -> FloatArray:
@@ -119,14 +128,21 @@ def _turned(v: FloatArray) -> FloatArray:
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def _curvature(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(…,) curvature where a cubic begins, from its first three points (…, 3, 2), and derivatives (…, 3, 2)."""
+def _curvature(points: FloatArray) -> FloatArray:
+    """(…,) curvature where a cubic begins, from its first three points (…, 3, 2)."""
+    a, c = points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 1, :]
+    value: FloatArray = 2 / 3 * cross(a, c) / np.hypot(a[..., 0], a[..., 1]) ** 3
+    return value
+
+
+@np.errstate(divide="ignore", invalid="ignore")
+def _curvature_slopes(points: FloatArray) -> FloatArray:
+    """(…, 3, 2) derivatives of :func:`_curvature`."""
     a, c = points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 1, :]
     size = np.hypot(a[..., 0], a[..., 1])[..., None]
-    value = 2 / 3 * cross(a, c)[..., None] / size**3
-    by_a = -2 / 3 * _turned(c) / size**3 - 3 * value * a / size**2
+    by_a = -2 / 3 * _turned(c) / size**3 - 3 * _curvature(points)[..., None] * a / size**2
     by_c = 2 / 3 * _turned(a) / size**3
-    return value[..., 0], np.stack([-by_a, by_a - by_c, by_c], axis=-2)
+    return np.stack([-by_a, by_a - by_c, by_c], axis=-2)
 
 
 class Stretch:
@@ -198,7 +214,7 @@ class Stretch:
         found = [float(np.abs(self.moves(x)).max() / self.design.tolerance)]
         for bound in bounds:
             at = np.tensordot(weights, here[:, bound.points], axes=1)
-            values = (jumps_at if bound.is_jump else turns_at)(at)[0] / bound.per
+            values = (_jumps if bound.is_jump else _turns)(at) / bound.per
             found.append(float((np.abs(values) / np.maximum(bound.most, LEAST)).max()))
         return max(found)
 
@@ -337,19 +353,20 @@ class Stretch:
         """(n,) prices of moves (n, S, 2) of master k beside those of all others."""
         off, weights = (tried - best[k]).reshape(len(tried), -1), self.design.places
         total = ((off @ self.cost[k]) * off).sum(axis=1) / self.design.step**2
-        here = self.places_of(x)
-        acts = np.flatnonzero(weights[:, k])
-        own = self.samples[:, k].any(axis=1)
-        moves = self.moves(x)[own] + (tried - x[k]).reshape(len(tried), -1) @ self.samples[own, k].T  # (n, R')
+        here, change = self.places_of(x), tried - x[k]
+        acts, moved = np.flatnonzero(weights[:, k]), np.flatnonzero(change.any(axis=(0, 2)))
+        change = change[:, moved]
+        slopes = self.samples[:, k].reshape(-1, len(self.free), 2)[:, moved].reshape(-1, 2 * len(moved))
+        own = slopes.any(axis=1)  # what does not depend on the points that are tried is the same for all
+        moves = self.moves(x)[own] + change.reshape(len(tried), -1) @ slopes[own].T  # (n, R')
         total += BEYOND * (np.maximum(np.abs(moves) / (LAST * self.design.tolerance) - 1, 0.0) ** 2).sum(axis=1)
         for bound in bounds:
-            part = self.spread[bound.points]
+            part = self.spread[bound.points][:, moved]
             if not part.any():
                 continue
             at = np.tensordot(weights[acts], here[:, bound.points], axes=1)  # (l, 5, 2)
-            change = part @ (tried - x[k])  # (n, 5, 2)
-            every = at + weights[acts, k][:, None, None] * change[:, None]  # (n, l, 5, 2)
-            value = np.abs((jumps_at(every) if bound.is_jump else turns_at(every))[0] / bound.per[acts])
+            every = at + weights[acts, k][:, None, None] * (part @ change)[:, None]  # (n, l, 5, 2)
+            value = np.abs((_jumps if bound.is_jump else _turns)(every) / bound.per[acts])
             most = bound.most[acts] + LEAST
             total += (BEYOND * np.maximum(value / most - 1, 0.0) ** 2 + (value / most) ** 2).sum(axis=1)
         return total

@@ -54,7 +54,7 @@ class Way(NamedTuple):
     """How a group moves.
 
     Attributes:
-        far: whether the handles at the other ends of the curves move, too. node: whether the nodes do. small: whether
+        far: 1 if the handles at the other ends of the curves move, too, 2 if the joints there do. node: whether nodes do. small: whether
             points move by no more than ``SMALL``. exact: whether joints turn by less than the threshold; or, where
             handles or segments are so short that a check does not count it, by more. meets: whether jumps of curvature
             that kinks hide are to vanish.
@@ -73,6 +73,7 @@ WAYS = [
     for exact, meets in ((True, True), (True, False), (False, True), (False, False))
     for far, node in ((0, False), (0, True), (1, True), (2, True))
 ]
+"""Ways that are tried in turn: small moves of much come before large ones of little."""
 
 
 Place = tuple[int, int]
@@ -226,7 +227,7 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
     """  # fmt: skip
     layout = Layout(contour)
     seen = set[bytes]()
-    stretches = dict[tuple[bool, bool], Stretch]()
+    stretches = dict[tuple[int, bool], Stretch]()
     for exact, ways in groupby(WAYS, key=lambda way: way.exact):
         later = []
         for way in ways:

@@ -30,7 +30,7 @@ DIGITS = 3
 INSIDE = 6
 """Parts of an interval of an axis between two ticks, at whose ends turns are bounded."""
 
-HALVINGS = 8
+HALVINGS = 5
 """How often parts of the design space are halved in which curves are near, but not certified to be."""
 
 
@@ -122,8 +122,8 @@ class Design(NamedTuple):
     """What holds for all joints of a glyph.
 
     Attributes:
-        grid: (…, K) weights of the masters at the corners of the design space's grid, a dimension for each axis, between
-            which every location lies. ticks: of each axis (T, K), between which weights are linear along it.
+        grid: (…, K) weights of the masters at the corners of the design space's grid, of a dimension for each axis,
+            between which every location lies. ticks: of each axis (T, K), between which weights are linear along it.
         places: (L, K) the masters and places on the axes and on pairs of them.
         step: of the grid of points, whole units or the source's decimals. tolerance: in font units.
         em: font units in an em. thresholds: of findings.
@@ -193,13 +193,14 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
     while boxes:
         grid, own, halvings = boxes.pop()
         corners = grid.reshape(-1, grid.shape[-1])
-        seen = _seen(corners, one, other, own, design.tolerance)
-        found = _between(corners, one, other, own, arcs, design.tolerance) if len(corners) > 1 else seen
-        far = ~(found <= design.tolerance)
-        again = far & (seen <= design.tolerance) & (halvings < HALVINGS)
-        bounds[own] = np.maximum(bounds[own], np.where(again, 0.0, found))
-        if again.any():
-            boxes += [(half, own[again], halvings + 1) for half in _halves(grid, new.points - old.points)]
+        found = _between(corners, one, other, own, arcs, design.tolerance)
+        far = np.flatnonzero(~(found <= design.tolerance))
+        if len(far) and len(corners) > 1 and halvings < HALVINGS:
+            again = far[_seen(corners, one, other, own[far], design.tolerance) <= design.tolerance]
+            if len(again):
+                found[again] = 0.0
+                boxes += [(half, own[again], halvings + 1) for half in _halves(grid, new.points - old.points)]
+        bounds[own] = np.maximum(bounds[own], found)
     return bounds
 
 
@@ -230,6 +231,8 @@ def _between(
 ) -> FloatArray:
     """(s,) certified bounds of segments at every location between some (V, K)."""
     anchors, found = _anchors(corners, old, new), np.zeros(len(own))
+    if len(corners) == 1:
+        arcs = np.empty((0, 4))
     for n, segment in enumerate(own):
         bounds = np.zeros(new.shape[1])
         bounds[segment] = np.nan

@@ -452,3 +452,23 @@ def test_a_short_handle_that_is_level_in_one_master_only_may_turn() -> None:
     assert not Layout(contour).frozen[1, [1, 2]].all()
     level = MasterContour(contour.points * [1, 0] + [0, 7], contour.degrees)
     assert Layout(level).frozen[:, [1, 2], 1].all()
+
+
+def test_a_joint_that_slides_along_a_line_costs_what_curves_move() -> None:
+    regular = [(0, 0), (300, 0), (400, 0), (420, 60), (420, 300)]
+    bold = [(0, 40), (260, 14), (380, 2), (430, 90), (430, 300)]
+    masters = gs.Masters(
+        "a", axes=(WEIGHT,), regions=np.array([[[0.0, 1.0, 1.0]]]), advances=np.zeros(2),
+        contours=[MasterContour(np.array([regular, bold], dtype=np.float64), np.array([1, 2, 1, 1]))],
+    )  # fmt: skip
+    old, at = masters.contours[0], np.array([0.3, 0.12])[:, None]
+    points = old.points.copy()
+    points[:, 1] += at * (old.points[:, 0] - old.points[:, 1])  # by 90 and 31 units
+    points[:, 2] += 0.02 * (old.points[:, 1] - old.points[:, 2])
+    new = MasterContour(points, old.degrees)
+    seen = 0.0
+    for weight in np.linspace(0, 1, 41):
+        one, other = (each.mixed(np.array([1 - weight, weight])) for each in (old, new))
+        seen = max(seen, gs.compare(gs.Outline("a", contours=[one]), gs.Outline("a", contours=[other])).seen)
+    bounds = distances(old, new, Design.of(masters, 1.1 * seen, THRESHOLDS, None))
+    assert seen <= bounds.max() <= 1.1 * seen

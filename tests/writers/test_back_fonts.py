@@ -99,6 +99,24 @@ def test_deltas_change_in_a_variable_font_of_quadratics(inferred: bool, tmp_path
         assert (one.points[:, [0, -1]] == other.points[:, [0, -1]]).all()
 
 
+def test_points_that_are_there_more_than_once_stay_so(tmp_path: Path) -> None:
+    points = [(0, 0), (0, 0), (161, 430), (300, 500), (300, 500), (439, 570), (600, 900), (700, -20), (0, 0)]
+    moves = [(0, 0), (0, 0), (32, -37), (0, 0), (0, 0), (-89, -20), (0, 0), (0, 0), (0, 0)]
+    on = [True, True, False, True, True, False, True, True, True]
+    font = variable_font(tmp_path / "a.ttf", {"a": quadratic(points, on)}, {"a": [({"wght": (0, 1, 1)}, moves)]})
+    old = gs.open_font(font).masters("a")
+    assert old.repeats is not None
+    facts = mend(font, tmp_path / "out", "--tolerance", "10")
+    assert (facts["changed"], facts["after"]) == (["a"], 0)
+    now = gs.open_font(tmp_path / "out" / "a.ttf").masters("a")
+    assert not same_points(old, now)
+    assert now.repeats is not None
+    assert now.repeats.tolist() == old.repeats.tolist()
+    stored = TTFont(tmp_path / "out" / "a.ttf")["glyf"]["a"].coordinates
+    assert len(stored) == len(points)
+    assert stored[3] == stored[4]
+
+
 def variable_cff2(folder: Path) -> Path:
     """A variable font of the two masters, with a hint."""
     document = DesignSpaceDocument()
