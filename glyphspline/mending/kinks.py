@@ -54,10 +54,10 @@ class Way(NamedTuple):
     """How a group moves.
 
     Attributes:
-        far: 1 if the handles at the other ends of the curves move, too, 2 if the joints there do. node: whether nodes do. small: whether
-            points move by no more than ``SMALL``. exact: whether joints turn by less than the threshold; or, where
-            handles or segments are so short that a check does not count it, by more. meets: whether jumps of curvature
-            that kinks hide are to vanish.
+        far: 1 if handles at the other ends of the curves move, too, 2 if joints there do. node: whether nodes do.
+        small: whether points move by no more than ``SMALL``. exact: whether joints turn by less than the threshold; or,
+            where handles or segments are so short that a check does not count it, by more.
+        meets: whether jumps of curvature that kinks hide are to vanish.
     """
 
     far: int
