@@ -30,7 +30,7 @@ DIGITS = 3
 INSIDE = 6
 """Parts of an interval of an axis between two ticks, at whose ends turns are bounded."""
 
-HALVINGS = 5
+HALVINGS = 8
 """How often parts of the design space are halved in which curves are near, but not certified to be."""
 
 
