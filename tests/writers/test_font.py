@@ -300,6 +300,24 @@ def test_a_glyph_of_a_cff_table_that_cannot_be_drawn_costs_only_itself(
     ]
 
 
+def test_char_strings_store_what_they_have_in_common_once() -> None:
+    source, shape = open_font(FONTS / "kouzan-gyosho.ttf"), polygon_contour(np.round(circle(400.0, 24)[:, 0]))
+    names = source.glyph_names[1:9]
+
+    def table(count: int) -> TTFont:
+        """Of a font in which so many glyphs have one outline, and the others none."""
+        glyphs = [result(*[shape] * (k < count), name=name, gid=k + 1) for k, name in enumerate(names)]
+        return TTFont(BytesIO(to_font(source, glyphs, "otf", tolerance=TOLERANCE)[0]))
+
+    one, eight = table(1), table(8)
+    assert eight.reader.tables["CFF "].length - one.reader.tables["CFF "].length < 7 * 24
+    strings = eight["CFF "].cff.topDictIndex[0].CharStrings
+    pens = [BoundsPen(None) for _ in names]
+    for name, pen in zip(names, pens, strict=True):
+        strings[name].draw(pen)
+    assert {pen.bounds for pen in pens} == {pens[0].bounds}
+
+
 def test_tables_that_are_broken_inside_are_an_error_that_names_the_font(tmp_path: Path) -> None:
     data = bytearray((FONTS / "kouzan-gyosho.ttf").read_bytes())
     entry = data.index(b"hmtx")

@@ -124,6 +124,8 @@ def to_font(
                 beyond.append(result.outline.name)
         target.finish()
         rename(font, family, source.style)
+        if flavour == "otf":
+            share_subroutines(font)
         file = BytesIO()
         font.save(file, reorderTables=False)
     largest = max((error for error in errors if error is not None), default=None)
@@ -178,7 +180,6 @@ class _InPlace:
 
     def finish(self) -> None:
         if self.flavour != "ttf":
-            self.font["CFF "].cff.remove_unused_subroutines()
             return
         glyf = self.font["glyf"]
         touched = [name for name in users(self.font, self.new) if name not in self.new]
@@ -195,6 +196,28 @@ class _InPlace:
         for name, left in lefts.items():  # rasterisers place an outline by its left side bearing
             glyf[name].recalcBounds(glyf)
             metrics[name] = (metrics[name][0], metrics[name][1] + glyf[name].xMin - left)
+
+
+def share_subroutines(font: TTFont) -> None:
+    """Store what char strings have in common once, as subroutines, by Adobe's ``tx``: new char strings have none.
+
+    Fonts with decimals keep the subroutines they have, as ``tx`` rounds to hundredths.
+    """
+    from cffsubr import Error, subroutinize
+
+    top = font["CFF "].cff.topDictIndex[0]
+    privates = [each.Private for each in getattr(top, "FDArray", [top])]
+    parts = [top.GlobalSubrs, *(each.Subrs for each in privates if hasattr(each, "Subrs")), top.CharStrings.values()]
+    font["CFF "].cff.remove_unused_subroutines()
+    programs = [string for part in parts for string in part]
+    for string in programs:
+        string.decompile()
+    if any(isinstance(token, float) for string in programs for token in string.program):
+        return
+    try:
+        subroutinize(font)
+    except Error as error:
+        log.warning("char strings share no subroutines: %s", error)
 
 
 def _empty_broken(strings: Any) -> None:
