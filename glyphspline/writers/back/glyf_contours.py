@@ -101,11 +101,11 @@ class GlyfContours(Stored):
         default = np.where(changed[:, None], steps[0], np.array(self._coordinates)[:-PHANTOMS]).astype(np.int64)
         found = []
         for k, variation in zip(self._numbers, self._given, strict=True):
-            own = list(variation.coordinates)
+            deltas = list(variation.coordinates)
             for a, b in self._spans:
                 if changed[a:b].any():
-                    own[a:b] = given_deltas(own[a:b], changed[a:b], steps[k, a:b], wanted[k, a:b], default[a:b])
-            found.append(own)
+                    deltas[a:b] = given_deltas(deltas[a:b], changed[a:b], steps[k, a:b], wanted[k, a:b], default[a:b])
+            found.append(deltas)
         return default, found
 
 
