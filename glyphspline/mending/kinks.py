@@ -264,10 +264,11 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
         stretch = Stretch(layout, [*stretches.values()][-1].free.tolist(), anything)
         bounds = bounds_of(stretch, group, way, design)
         x = stretch.least(bounds, np.inf)
-        points = stretch.places_of(stretch.on_grid(x, bounds, np.inf))
-        if _is_mended(layout, group, points, way.exact, design):
-            farthest = max(float(np.abs(stretch.moves(x)).max()), design.tolerance)
-            _proposal(group, first, layout, points, design, farthest)
+        for points in _on_grid(stretch, bounds, x, np.inf):
+            if _is_mended(layout, group, points, way.exact, design):
+                farthest = max(float(np.abs(stretch.moves(x)).max()), design.tolerance)
+                _proposal(group, first, layout, points, design, farthest)
+                break
 
 
 def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, most: float) -> Iterator[FloatArray]:

@@ -22,9 +22,9 @@ ON = [True, False, True, False, True, True]
 def mended(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A variable font with two glyphs that kink, mended; one of them needs more than the tolerance."""
     out = tmp_path_factory.mktemp("mended")
-    far = [(3 * x, 3 * y) for x, y in POINTS]
+    far = [(5 * x, 5 * y) for x, y in POINTS]
     glyphs = {"a": quadratic(POINTS, ON), "<b>": quadratic(far, ON)}
-    deltas = [(3 * x, 3 * y) for x, y in DELTAS]
+    deltas = [(5 * x, 5 * y) for x, y in DELTAS]
     font = variable_font(
         out / "a.ttf", glyphs, {"a": [({"wght": (0, 1, 1)}, DELTAS)], "<b>": [({"wght": (0, 1, 1)}, deltas)]}
     )

@@ -12,7 +12,7 @@ from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.sampling import CORNER_ANGLE
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray, counted
 from ..settings import WHOSE, Combs, Whose
 
 SPACING = 1 / 140
@@ -97,10 +97,17 @@ def shown_by(combs: Combs) -> Whose:
     return "source" if combs == "source" else "result"
 
 
-def legend(combs: Combs, number: int, reach: float) -> str:
-    """What a map says of its curvature, and of the number of its cut teeth; ``reach`` is its scale in 1/em."""
+def legend(combs: Combs, number: int, reach: float, corners: int = 0, largest: float | None = None) -> str:
+    """What a map says of its curvature, and of what it does not show of it.
+
+    Args:
+        number: of cut teeth. reach: the scale in 1/em. corners: those in whose turn teeth are left out.
+        largest: absolute curvature in 1/em, corners included.
+    """
     words = f" of the {shown_by(combs)} in 1/em, convex positive{'; dashed: of the source' * (combs == 'both')}"
-    return words + f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" * bool(number)
+    words += f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" * bool(number)
+    words += f"; left out: the teeth in {counted(corners, 'corner')}" * bool(corners)
+    return words if largest is None else f"{words}; at most {largest:.3g}"
 
 
 def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:

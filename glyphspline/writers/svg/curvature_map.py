@@ -57,7 +57,7 @@ def to_curvature_svg(
     Its length is the absolute curvature, 0.03 em at ``scale``; teeth are cut at 2.5 times that and end with a dot.
     Colour is signed κ: blue and violet where the ink is convex, yellow and red where it is concave, whichever way the
     contours run. The legend, no wider than the glyph, is in 1/em: curvature times units per em; it says how many teeth
-    are cut.
+    are cut, in how many corners they are left out, and the largest curvature of a result, corners included.
 
     Args:
         glyph: a result of :func:`convert`.
@@ -102,7 +102,7 @@ def write_map(
         scale = maps.scale_for(em) or curvature_scale([glyph])
     precision = comb_precision(em)
     path = path or curves_data(curves_of(glyph, whose), glyph.options.precision)[0]
-    layers, box, cut = _comb(glyph, scale, combs, maps.corner_teeth, precision)
+    layers, box, cut, corners = _comb(glyph, scale, combs, maps.corner_teeth, precision)
     box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"
     layers.append(
@@ -123,7 +123,8 @@ def write_map(
         layers.append(f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{dots}"/>\n')
     width = min(max(floor((box[2] - box[0]) / (STEP * em)), 1) * STEP, WIDEST) * em
     letters = min(LETTERS * em, width / 8)
-    lines = wrap(f"κ{legend(combs, cut, scale * em)}", max(int(width / (ADVANCE * letters)), 1))
+    words = legend(combs, cut, scale * em, corners, largest_curvature(glyph) if whose == "result" else None)
+    lines = wrap(f"κ{words}", max(int(width / (ADVANCE * letters)), 1))
     said = [_words(0.0, -2.75 - 1.4 * k, "start", line, letters, precision) for k, line in enumerate(lines)]
     height, margin = (3.1 + 1.4 * (len(lines) - 1)) * letters, 0.02 * em
     left, base = box[0], box[1] - (0.06 + TOOTH) * em
@@ -144,8 +145,8 @@ def write_map(
 
 def _comb(
     glyph: GlyphResult, scale: float, combs: Combs, in_corners: bool, precision: int
-) -> tuple[list[str], Box | None, int]:
-    """The comb's paths, the box around curves and combs, and the number of teeth that are cut.
+) -> tuple[list[str], Box | None, int, int]:
+    """The comb's paths, the box around curves and combs, and the numbers of teeth that are cut and of corners without.
 
     Paths are teeth by colour class, the line of tips and marks of cut teeth; of the source of both, the line alone.
     """
@@ -154,6 +155,7 @@ def _comb(
     em, unit = glyph.outline.metrics.units_per_em, 10.0**precision
     least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
     layers, box, number_cut = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None, 0
+    corners = 0
     wanted: tuple[Whose, ...] = ("result", "source") if combs == "both" else (shown_by(combs),)
     for whose in wanted:
         marks = sides_and_corners(glyph, whose, in_corners=in_corners)
@@ -172,10 +174,17 @@ def _comb(
             layers.append(f'<path class="source-comb" stroke="{SOURCE}" {dashed} d="{parts[-1]}"/>\n')
             continue
         cut &= classes >= 0
-        number_cut = int(cut.sum())
+        number_cut, corners = int(cut.sum()), len(marks[1])
         parts.append(dots_text(ends[cut, 2:], precision).tobytes().decode())
         layers += [f'{begin}{part}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
-    return [*layers, "</g>\n"], box, number_cut
+    return [*layers, "</g>\n"], box, number_cut, corners
+
+
+def largest_curvature(glyph: GlyphResult) -> float | None:
+    """The largest absolute curvature of a result in 1/em, as measured; None if it was not."""
+    found = [contour.measures.max_curvature for contour in glyph.contours]
+    known = [each for each in found if each is not None]
+    return max(known) * glyph.outline.metrics.units_per_em if known else None
 
 
 @cache
