@@ -35,10 +35,9 @@ MOST_STEPS, MOST_MEETINGS = 20_000_000, 20_000
 DEEPER = 9
 """Halvings more of pieces that share a joint and are not decided: loops at joints are smaller than chord errors."""
 
-FINER, MOST_FINER = 5, 24
+FINER, MOST_FINER = 5, 48
 """Halvings more of pieces whose chords touch: strands may cross twice within chord errors. Beyond these halvings
-rounding decides. Pairs that meet then, at most, or the strands lie on each other and touch as they are: a chord that
-lies on another one would become 32 that do."""
+rounding decides. Pairs that meet then, at most, or the strands lie on each other and touch as they are."""
 
 STACK = 3 * 3 * (DEEPEST + DEEPER)
 """Pairs to do at a time: each halving adds two at most, to a piece's pair with itself and then to pairs of halves."""
