@@ -16,20 +16,11 @@ import numpy as np
 from ..compiled import compiled
 from ..types import BoolArray, FloatArray, IntArray
 from .bezier import evaluate
-from .cubics import bernstein, jet, length
+from .cubics import jet, length
 
-RADIUS = 2e-5
-"""Radius of the largest circle, as a share of the extent: far above the chord errors, far below what contours draw."""
-
-FIRST, SMALLER = 256.0, 16.0
-"""Circles begin with the radius divided by the first, where strands cross at angles that errors of chords which touch
-do not change, and grow by the second: in a small one there are no other contacts."""
-
-STEPS = 1_000
-"""Steps, beside one a piece, after which a strand has left the circle: tens are enough but where it runs along it."""
-
-PLACES = 32
-"""Chords of a piece that say how long it is and how far it goes."""
+STEPS, HALVINGS = 32, 50
+"""Points of a piece that are looked at for where it leaves the circle first. Of an interval of parameters, for the
+point at which a strand crosses the circle."""
 
 
 def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> FloatArray:
@@ -43,62 +34,45 @@ def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> Flo
         (L, 4) the contours, and the places, of a contact those where it begins.
     """
     touches = ~np.isnan(met[:, 4])
-    found = [met[~touches, :4]]
-    largest = RADIUS * float(np.abs(cubics).max(initial=0.0))
-    for pair in np.unique(met[touches, :2].astype(np.int64), axis=0):
-        first, second = pair.tolist()
-        one = _Strand(cubics[offsets[first] : offsets[first + 1]])
-        other = one if first == second else _Strand(cubics[offsets[second] : offsets[second + 1]])
-        its = (met[:, :2] == pair).all(axis=1)
-        left, crossing = met[its & touches, 2:], met[its & ~touches, 2:4]
-        radius = largest / FIRST
-        while len(left) and radius <= largest:
-            undecided = [np.empty((0, 4))]
-            for contact in _contacts(left, one, other, 2 * radius):
-                crosses = _crosses(contact, one, other, radius, largest, crossing)
-                if crosses:
-                    crossing = np.concatenate([crossing, [contact.begin]])
-                    found.append(np.array([[*pair, *contact.begin]]))
-                if crosses is None:
-                    undecided.append(np.array(contact.places))
-            left, radius = np.concatenate(undecided), SMALLER * radius
-    return np.concatenate(found)
-
-
-def _crosses(
-    contact: _Contact, one: _Strand, other: _Strand, radius: float, largest: float, known: FloatArray
-) -> bool | None:
-    """Whether contours change sides in a contact, beside the crossings (k, 2) that are known; None if not decided."""
-    (a, b), (a_end, b_end) = contact.begin, contact.end
-    small, long = radius, one.reach(a, a_end)
-    if one is other:  # the strands may be the two sides of a fold, or of a small loop
-        small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
-    # Directions nearer to each other than this, in radians, are the same: 25 times what the distance of chords that
-    # touch makes of a direction.
-    tied = 5e-6 * largest / radius
-    if radius < largest:
-        if small < radius or long > 0.1 * radius:
-            return None
-    else:
-        tied = 1e-8
-        # A contact shorter than this share of the radius is a point. Beside a longer one that ends in a fold, the
-        # strands may cross where it begins.
-        if small < radius and long > 0.1 * radius:
-            (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(*at))
-            if one.reach(a, b) < 2 * radius:
-                return None
+    crossing, touching = met[~touches, :4], met[touches]
+    # Radius of the circle, as a share of the extent: far above the chord errors, far below what a contour draws.
+    radius = 2e-5 * float(np.abs(cubics).max(initial=0.0))
+    found = []
+    for c, d in np.unique(touching[:, :2].astype(np.int64), axis=0).tolist():
+        one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]]) for k in (c, d))
+        known = crossing[(crossing[:, :2] == (c, d)).all(axis=1), 2:]
+        for contact in _contacts(touching[(touching[:, :2] == (c, d)).all(axis=1), 2:], one, other, radius):
+            (a, b), (a_end, b_end) = contact.begin, contact.end
             small = radius
-    along = other.way(b, b_end) >= 0
-    first, last = (
-        _exit(one, x, other, y, forward, forward == along, small, tied)
-        for x, y, forward in ((a, b, False), (a_end, b_end, True))
-    )
-    if first.left is None or last.left is None:
-        return None
-    inside = one.between(known[:, 0], first.own, last.own)
-    low, high = (first, last) if along else (last, first)
-    inside &= other.between(known[:, 1], low.other, high.other)
-    return bool((inside.sum() + (first.left != last.left)) % 2)
+            if c == d:  # the strands may be the two sides of a fold, or of a small loop
+                small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
+                # A contact shorter than this share of the radius is a point. Beside a longer one that ends in a fold,
+                # the strands may cross where it begins.
+                if small < radius and one.reach(a, a_end) > 0.1 * radius:
+                    (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(*at))
+                    if one.reach(a, b) < 2 * radius:
+                        continue
+                    small = radius
+            along = other.way(b, b_end) >= 0
+            # Directions nearer to each other than this, in radians, are the same.
+            circles = [(small, 1e-8)]
+            # In a point, strands may cross plainly, at an angle that chord errors do not change. Then a smaller circle
+            # decides, which leaves out other crossings, as at the tip of a fold.
+            if (a, b) == (a_end, b_end) and radius / 200 < small:
+                circles = [(radius / 200, 0.1), *circles]
+            for size, tied in circles:
+                exits = [
+                    _exit(one, x, other, y, forward, forward == along, size, tied)
+                    for x, y, forward in ((a, b, False), (a_end, b_end, True))
+                ]
+                if None not in (exits[0].left, exits[1].left):
+                    inside = one.between(known[:, 0], exits[0].own, exits[1].own)
+                    low, high = exits if along else exits[::-1]
+                    inside &= other.between(known[:, 1], low.other, high.other)
+                    if (inside.sum() + (exits[0].left != exits[1].left)) % 2:
+                        found.append((c, d, a, b))
+                    break
+    return np.concatenate([crossing, np.array(found, dtype=np.float64).reshape(-1, 4)])
 
 
 class _Strand:
@@ -106,14 +80,13 @@ class _Strand:
 
     def __init__(self, cubics: FloatArray) -> None:
         self.cubics = cubics
-        points = np.einsum("kt,mkc->mtc", bernstein(PLACES), cubics)
-        chords = np.hypot(*np.moveaxis(np.diff(points, axis=1), 2, 0))
-        self.lengths = np.concatenate([[0.0], np.cumsum(chords)])
+        legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
+        self.lengths = np.concatenate([[0.0], np.cumsum(legs)])
         self.total = float(self.lengths[-1])
 
     def positions(self, places: FloatArray) -> FloatArray:
-        """Lengths along the contour up to places (k,), by chords."""
-        found: FloatArray = np.interp(places * PLACES, np.arange(len(self.lengths)), self.lengths)
+        """Lengths of the control polygon up to places (k,), with which they grow."""
+        found: FloatArray = np.interp(places, np.arange(len(self.lengths)), self.lengths)
         return found
 
     def way(self, place: float, to: float) -> float:
@@ -132,8 +105,8 @@ class _Strand:
         high += len(self.cubics) * (high < low)
         ends = np.array([low, *range(int(low) + 1, int(np.ceil(high))), high])
         pieces = ends[:-1].astype(np.int64)
-        x = ends[:-1, None] - pieces[:, None] + np.diff(ends)[:, None] * np.linspace(0, 1, PLACES + 1)
-        chain = self.cubics[np.repeat(pieces % len(self.cubics), PLACES + 1)]
+        x = ends[:-1, None] - pieces[:, None] + np.diff(ends)[:, None] * np.linspace(0, 1, STEPS + 1)
+        chain = self.cubics[np.repeat(pieces % len(self.cubics), STEPS + 1)]
         points = evaluate(chain, x.ravel())
         return float(np.hypot(*(points - points[0]).T).max())
 
@@ -144,30 +117,35 @@ def leaving(
 ) -> tuple[float, float]:
     """The angle at which a closed chain leaves a circle, from a place on, and where.
 
-    It goes in steps after which it cannot have left yet, by its speed and the most that this changes.
-
     Args:
         centre: the circle's, as a place of the chain ``other``.
     """
     s = min(int(centre), len(other) - 1)
     cx, cy, _, _, _, _ = jet(other, s, centre - s)
     m, s = len(cubics), min(int(place), len(cubics) - 1)
-    t, end, way = place - s, 1.0 if forward else 0.0, 1 if forward else -1
-    for _ in range(m + STEPS):
-        x, y, dx, dy, _, _ = jet(cubics, s, t)
-        left = radius - length(x - cx, y - cy)
-        if left <= 1e-12 * radius:
+    inside, end, step = place - s, 1.0 if forward else 0.0, 1 if forward else -1
+    outside = end
+    for _ in range(m + 1):
+        begin, found = inside, False
+        for k in range(1, STEPS + 1):
+            outside = begin + (end - begin) * k / STEPS
+            x, y, _, _, _, _ = jet(cubics, s, outside)
+            if length(x - cx, y - cy) >= radius:
+                found = True
+                break
+            inside = outside
+        if found:
             break
-        change = 0.0
-        for k in range(2):
-            ax = cubics[s, k, 0] - 2 * cubics[s, k + 1, 0] + cubics[s, k + 2, 0]
-            ay = cubics[s, k, 1] - 2 * cubics[s, k + 1, 1] + cubics[s, k + 2, 1]
-            change = max(change, 6 * length(ax, ay))
-        speed = length(dx, dy)
-        t += way * 2 * left / max(speed + np.sqrt(speed * speed + 2 * change * left), 1e-300)
-        if way * (t - end) >= 0:
-            s, t = (s + way) % m, 1.0 - end
-    return np.arctan2(y - cy, x - cx), s + t
+        s, inside = (s + step) % m, 1.0 - end
+    for _ in range(HALVINGS):
+        middle = (inside + outside) / 2
+        x, y, _, _, _, _ = jet(cubics, s, middle)
+        if length(x - cx, y - cy) < radius:
+            inside = middle
+        else:
+            outside = middle
+    x, y, _, _, _, _ = jet(cubics, s, outside)
+    return np.arctan2(y - cy, x - cx), s + outside
 
 
 @dataclass
@@ -177,14 +155,12 @@ class _Contact:
     Attributes:
         begin, end: places on both contours. position: of the end, on the first contour.
         beside: positions on the second contour of the ends of chords, the last ones at the end.
-        places: begin and end of each pair of chords.
     """
 
     begin: tuple[float, float]
     end: tuple[float, float]
     position: float
     beside: list[float]
-    places: list[list[float]]
 
     def is_beside(self, positions: list[float], total: float, radius: float) -> bool:
         """Whether one of some positions is near one of the last ones; ``total`` is the length of the contour."""
@@ -213,17 +189,15 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
                 if a_end > contact.end[0]:
                     contact.end, contact.position = (a_end, b_end), s_end
                 contact.beside += beside
-                contact.places.append([a, b, a_end, b_end])
                 break
         else:
-            still.append(_Contact((a, b), (a_end, b_end), s_end, beside, [[a, b, a_end, b_end]]))
+            still.append(_Contact((a, b), (a_end, b_end), s_end, beside))
             found.append(still[-1])
     for contact in found[1:]:  # one that runs over the contour's start is in two parts
         first = found[0]
         over = abs(one.way(contact.end[0], first.begin[0])) <= radius
         if over and abs(other.way(contact.end[1], first.begin[1])) <= radius:
             contact.end = first.end
-            contact.places += first.places
             return found[1:]
     return found
 

@@ -170,24 +170,6 @@ def test_strands_that_cross_twice_within_chord_errors_are_found() -> None:
     np.testing.assert_allclose([places for _, places in found], [(0.7320862, 1.28354), (0.7417227, 1.2574887)])
 
 
-def test_strands_that_cross_twice_in_one_small_circle_are_found() -> None:
-    """The tip passes its strands by 0.002, and they cross before it twice within 0.006."""
-    there = [(824.37, 93.66), (824.48, 93.61), (824.59, 93.55), (824.55, 93.57)]
-    back = [(824.55, 93.57), (824.53, 93.58), (824.48, 93.61), (824.41, 93.64)]
-    around = lines([(824.41, 93.64), (800, 200), (700, 93), (824.37, 93.66)])[:3]
-    found = [places for _, places in crossings_of(np.concatenate([[there, back], around])) if max(places) < 2]
-    np.testing.assert_allclose(found, [(0.3203735, 1.679629), (0.3300171, 1.6633543)], atol=1e-6)
-
-
-def test_a_nose_at_the_tip_of_a_fold_is_found() -> None:
-    """The tip runs on for 1e-4 before it turns back across the way there, at an angle of 0.002."""
-    there = [(1.98, -0.03), (1.31, -0.02), (0.66, -0.01), (0.65, -0.01)]
-    back = [(0.65, -0.01), (0.64, -0.01), (1.28, -0.01), (1.95, -0.02)]
-    around = lines([(1.95, -0.02), (822.45, -1), (822.45, -2), (1.98, -0.03)])[:3]
-    ((_, places),) = crossings_of(np.concatenate([[there, back], around]))
-    np.testing.assert_allclose(places, (0.9987423, 1.0167236), atol=1e-6)
-
-
 def test_a_loop_within_a_segment_is_found() -> None:
     loop = np.array([[(0, 0), (30, 30), (-20, 30), (10, 0)], [(10, 0), (7, -5), (3, -5), (0, 0)]])
     ((pair, (x, y)),) = crossings_of(loop)
