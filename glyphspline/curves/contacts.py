@@ -3,18 +3,17 @@
 A contact is a set of pairs of chords that touch, each at a place of the two contours or along a stretch, and that hang
 together. At its two ends, which are one point if it is no stretch, the second contour leaves the first one to its left
 or to its right. The contours cross if it leaves to different sides. What side that is, is read from the points at which
-the strands cross a small circle around the end; chords that cross inside these circles are part of what is read there.
+the strands cross a small circle around the end.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from ..compiled import compiled
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import FloatArray, IntArray
 from .bezier import evaluate
 from .cubics import jet, length
 
@@ -23,24 +22,22 @@ STEPS, HALVINGS = 32, 50
 point at which a strand crosses the circle."""
 
 
-def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> FloatArray:
-    """Where contours cross: chords that do, and contacts in which contours change sides.
+def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArray) -> FloatArray:
+    """Of the contacts of contours, those in which they change sides.
 
     Args:
         cubics: (m, 4, 2) segments of all contours. offsets: (C + 1,) where each contour begins.
-        met: (K, 6) pairs of chords that cross or touch, see :func:`.crossings.meetings`.
+        touching: (K, 6) pairs of chords that touch: the contours c <= d, and the places (a, b), (a', b') where the
+            contact of the two chords begins and ends, a <= a'.
 
     Returns:
-        (L, 4) the contours, and the places, of a contact those where it begins.
+        (L, 4) the contours, and the places where a contact begins.
     """
-    touches = ~np.isnan(met[:, 4])
-    crossing, touching = met[~touches, :4], met[touches]
     # Radius of the circle, as a share of the extent: far above the chord errors, far below what a contour draws.
-    radius = 2e-5 * float(np.abs(cubics).max(initial=0.0))
+    radius = 2e-5 * float(np.abs(cubics).max())
     found = []
     for c, d in np.unique(touching[:, :2].astype(np.int64), axis=0).tolist():
         one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]]) for k in (c, d))
-        known = crossing[(crossing[:, :2] == (c, d)).all(axis=1), 2:]
         for contact in _contacts(touching[(touching[:, :2] == (c, d)).all(axis=1), 2:], one, other, radius):
             (a, b), (a_end, b_end) = contact.begin, contact.end
             small = radius
@@ -61,18 +58,15 @@ def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> Flo
             if (a, b) == (a_end, b_end) and radius / 200 < small:
                 circles = [(radius / 200, 0.1), *circles]
             for size, tied in circles:
-                exits = [
-                    _exit(one, x, other, y, forward, forward == along, size, tied)
-                    for x, y, forward in ((a, b, False), (a_end, b_end, True))
+                sides = [
+                    _is_left(one, x, other, y, way, size, tied)
+                    for x, y, way in ((a, b, not along), (a_end, b_end, along))
                 ]
-                if None not in (exits[0].left, exits[1].left):
-                    inside = one.between(known[:, 0], exits[0].own, exits[1].own)
-                    low, high = exits if along else exits[::-1]
-                    inside &= other.between(known[:, 1], low.other, high.other)
-                    if (inside.sum() + (exits[0].left != exits[1].left)) % 2:
+                if None not in sides:
+                    if sides[0] != sides[1]:
                         found.append((c, d, a, b))
                     break
-    return np.concatenate([crossing, np.array(found, dtype=np.float64).reshape(-1, 4)])
+    return np.array(found, dtype=np.float64).reshape(-1, 4)
 
 
 class _Strand:
@@ -94,11 +88,6 @@ class _Strand:
         begin, end = self.positions(np.array([place, to])).tolist()
         return float((end - begin + self.total / 2) % self.total - self.total / 2)
 
-    def between(self, places: FloatArray, begin: float, end: float) -> BoolArray:
-        """(k,) which places (k,) one passes on the way from one place forward to another one."""
-        found: BoolArray = (places - begin) % len(self.cubics) <= (end - begin) % len(self.cubics)
-        return found
-
     def reach(self, place: float, to: float) -> float:
         """How far the contour goes from a place on the shorter way to another one: to points of each piece."""
         low, high = (place, to) if self.way(place, to) >= 0 else (to, place)
@@ -112,10 +101,10 @@ class _Strand:
 
 
 @compiled
-def leaving(
+def leaving_angle(
     cubics: FloatArray, centre: float, place: float, forward: bool, radius: float, other: FloatArray
-) -> tuple[float, float]:
-    """The angle at which a closed chain leaves a circle, from a place on, and where.
+) -> float:
+    """The angle at which a closed chain leaves a circle, from a place on.
 
     Args:
         centre: the circle's, as a place of the chain ``other``.
@@ -145,7 +134,7 @@ def leaving(
         else:
             outside = middle
     x, y, _, _, _, _ = jet(cubics, s, outside)
-    return np.arctan2(y - cy, x - cx), s + outside
+    return np.arctan2(y - cy, x - cx)
 
 
 @dataclass
@@ -174,7 +163,7 @@ class _Contact:
 
 
 def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
-    """Pairs of chords that hang together; see :func:`all_crossings`."""
+    """Pairs of chords that hang together; see :func:`crossing_contacts`."""
     ordered = touching[np.lexsort(touching.T[::-1])]
     along = [one.positions(ordered[:, k]) for k in (0, 2)]
     across = [other.positions(ordered[:, k]) for k in (1, 3)]
@@ -202,26 +191,13 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     return found
 
 
-class _Exit(NamedTuple):
-    """Where the strands of a contact leave the circle around one of its ends.
-
-    Attributes:
-        own, other: places of both contours. left: whether the second one is to the left of the first one, as this runs;
-            None if they leave together.
-    """
-
-    own: float
-    other: float
-    left: bool | None
-
-
-def _exit(
-    one: _Strand, a: float, other: _Strand, b: float, forward: bool, other_forward: bool, radius: float, tied: float
-) -> _Exit:
-    """Leave a contact from places a and b, on the first contour and on the other one forward or backward."""
-    (ahead, own), (back, behind) = (leaving(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
-    leaves, its = leaving(other.cubics, a, b, other_forward, radius, one.cubics)
+def _is_left(
+    one: _Strand, a: float, other: _Strand, b: float, forward: bool, radius: float, tied: float
+) -> bool | None:
+    """Whether a contour leaves another one to its left, from a contact at places a and b; None if along it."""
+    ahead, back = (leaving_angle(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
+    leaves = leaving_angle(other.cubics, a, b, forward, radius, one.cubics)
     whole = 2 * np.pi
-    ties = any(abs((leaves - x + np.pi) % whole - np.pi) <= tied for x in (ahead, back))
-    left = None if ties else bool((leaves - ahead) % whole < (back - ahead) % whole)
-    return _Exit(own if forward else behind, its, left)
+    if any(abs((leaves - x + np.pi) % whole - np.pi) <= tied for x in (ahead, back)):
+        return None
+    return bool((leaves - ahead) % whole < (back - ahead) % whole)

@@ -20,7 +20,7 @@ import numpy as np
 from ..arrays import ascending, grown
 from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray, IntArray
-from .contacts import all_crossings
+from .contacts import crossing_contacts
 from .cubics import extent, split
 
 FLAT = 1e-9
@@ -34,10 +34,6 @@ MOST_STEPS, MOST_MEETINGS = 20_000_000, 20_000
 
 DEEPER = 9
 """Halvings more of pieces that share a joint and are not decided: loops at joints are smaller than chord errors."""
-
-FINER, MOST_FINER = 5, 48
-"""Halvings more of pieces whose chords touch: strands may cross twice within chord errors. Beyond these halvings
-rounding decides. Pairs that meet then, at most, or the strands lie on each other and touch as they are."""
 
 STACK = 3 * 3 * (DEEPEST + DEEPER)
 """Pairs to do at a time: each halving adds two at most, to a piece's pair with itself and then to pairs of halves."""
@@ -60,8 +56,12 @@ def crossings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[
         counted from the contour's first, and local parameter. And (G,) whether all of a glyph's were looked for: an
         outline of thousands of coinciding strands would take minutes.
     """
-    met, complete = meetings(cubics, offsets, glyphs)
-    found = all_crossings(cubics, offsets, met)
+    found, complete = meetings(cubics, offsets, glyphs)
+    single = np.isnan(found[:, 4])
+    if single.all():
+        return found[:, :4], complete
+    crossed = crossing_contacts(cubics, offsets, found[~single])
+    found = np.concatenate([found[single, :4], crossed])
     return found[np.lexsort(found.T[::-1])], complete
 
 
@@ -108,7 +108,6 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
     A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
     marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
     order, steps = ascending(left), 0
-    coarse, floor = -1, 0  # the row of a pair that touches and is halved on, and its place on the stack
     for oi in range(n):
         i = order[oi]
         for oj in range(oi, n):
@@ -129,22 +128,15 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             )
             begins[0, 0], begins[0, 1] = 0.0, 0.0
             top = 0
-            while top >= 0 or coarse >= 0:
+            while top >= 0:
                 if steps > MOST_STEPS or count > MOST_MEETINGS:
                     return found[:0], False
                 steps += 1
-                if coarse >= 0 and count > coarse + 1 + MOST_FINER:
-                    top, count, coarse = floor - 1, coarse + 1, -1
-                    continue
-                if coarse >= 0 and top < floor:
-                    found[coarse : count - 1] = found[coarse + 1 : count].copy()
-                    count, coarse = count - 1, -1
-                    continue
                 kind = marks[top, 2]
                 if decided(A[top], B[top], kind):
                     top -= 1
                     continue
-                deepest = DEEPER if kind else FINER if coarse >= 0 else 0
+                deepest = DEEPER if kind else 0
                 ended, other_ended = marks[top, 0] >= deep[s] + deepest, marks[top, 1] >= deep[t] + deepest
                 same = back = not kind  # whether both pieces have the same Bézier points, or in reverse
                 for k in range(0 if kind else 4):
@@ -170,10 +162,7 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                             found[count, 2 + k] = begin + share * parameter_at(cubic, one)
                             found[count, 4 + k] = begin + share * parameter_at(cubic, other)
                         count += 1
-                    if coarse < 0 and x >= 0.0 and x_end >= 0.0 and deep[s] + deep[t] > 0 and not (same or back):
-                        coarse, floor = count - 1, top
-                    else:
-                        top -= 1
+                    top -= 1
                 elif other_ended or (not ended and legs(A[top]) >= legs(B[top])):
                     top = halve(A, B, marks, begins, top, 0)
                 else:

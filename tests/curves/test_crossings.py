@@ -161,15 +161,6 @@ def test_crossings_beside_the_tip_of_a_fold_are_found_both() -> None:
     assert sorted((int(x), int(y)) for _, (x, y) in crossings_of(np.array(chain))) == [(1, 2), (1, 3)]
 
 
-def test_strands_that_cross_twice_within_chord_errors_are_found() -> None:
-    """There, and back on the other side for a 60th of a unit, by 4e-6 at most."""
-    there = [(662.59, -10.5), (662.32, -12.08), (662.08, -13.5), (662.12, -13.24)]
-    back = [(662.12, -13.24), (662.14, -13.15), (662.19, -12.85), (662.23, -12.5)]
-    around = lines([(662.23, -12.5), (662.23, 0), (663, 0), (662.59, -10.5)])[:3]
-    found = crossings_of(np.concatenate([[there, back], around]))
-    np.testing.assert_allclose([places for _, places in found], [(0.7320862, 1.28354), (0.7417227, 1.2574887)])
-
-
 def test_a_loop_within_a_segment_is_found() -> None:
     loop = np.array([[(0, 0), (30, 30), (-20, 30), (10, 0)], [(10, 0), (7, -5), (3, -5), (0, 0)]])
     ((pair, (x, y)),) = crossings_of(loop)
