@@ -124,12 +124,11 @@ def to_font(
                 beyond.append(result.outline.name)
         target.finish()
         rename(font, family, source.style)
-        if flavour == "otf":
-            share_subroutines(font)
-        file = BytesIO()
-        font.save(file, reorderTables=False)
+        data = _saved(font)
+        if flavour == "otf" and _grew(font, data) and share_subroutines(font):
+            data = _saved(font)
     largest = max((error for error in errors if error is not None), default=None)
-    return file.getvalue(), FontSummary(family, len(errors), largest, tuple(beyond), added)
+    return data, FontSummary(family, len(errors), largest, tuple(beyond), added)
 
 
 class _InPlace:
@@ -180,6 +179,7 @@ class _InPlace:
 
     def finish(self) -> None:
         if self.flavour != "ttf":
+            self.font["CFF "].cff.remove_unused_subroutines()
             return
         glyf = self.font["glyf"]
         touched = [name for name in users(self.font, self.new) if name not in self.new]
@@ -198,26 +198,39 @@ class _InPlace:
             metrics[name] = (metrics[name][0], metrics[name][1] + glyf[name].xMin - left)
 
 
-def share_subroutines(font: TTFont) -> None:
+def _saved(font: TTFont) -> bytes:
+    file = BytesIO()
+    font.save(file, reorderTables=False)
+    return file.getvalue()
+
+
+def _grew(font: TTFont, data: bytes) -> bool:
+    """Whether the char strings of a saved font take more than the source's, or the source has none."""
+    before, after = font.reader, TTFont(BytesIO(data), lazy=True).reader
+    return before is None or "CFF " not in before or after.tables["CFF "].length > before.tables["CFF "].length
+
+
+def share_subroutines(font: TTFont) -> bool:
     """Store what char strings have in common once, as subroutines, by Adobe's ``tx``: new char strings have none.
 
-    Fonts with decimals keep the subroutines they have, as ``tx`` rounds to hundredths.
+    Fonts with decimals keep the subroutines they have, as ``tx`` rounds to hundredths; then it is False.
     """
     from cffsubr import Error, subroutinize
 
     top = font["CFF "].cff.topDictIndex[0]
     privates = [each.Private for each in getattr(top, "FDArray", [top])]
     parts = [top.GlobalSubrs, *(each.Subrs for each in privates if hasattr(each, "Subrs")), top.CharStrings.values()]
-    font["CFF "].cff.remove_unused_subroutines()
     programs = [string for part in parts for string in part]
     for string in programs:
         string.decompile()
     if any(isinstance(token, float) for string in programs for token in string.program):
-        return
+        return False
     try:
         subroutinize(font)
     except Error as error:
         log.warning("char strings share no subroutines: %s", error)
+        return False
+    return True
 
 
 def _empty_broken(strings: Any) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 
@@ -107,7 +108,11 @@ def legend(combs: Combs, number: int, reach: float, corners: int = 0, largest: f
     words = f" of the {shown_by(combs)} in 1/em, convex positive{'; dashed: of the source' * (combs == 'both')}"
     words += f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" * bool(number)
     words += f"; left out: the teeth in {counted(corners, 'corner')}" * bool(corners)
-    return words if largest is None else f"{words}; at most {largest:.3g}"
+    if largest is None:
+        return words
+    return (
+        f"{words}; at most {largest:{'.0f' if largest >= 100 else '.3g'}}" if isfinite(largest) else f"{words}; a cusp"
+    )
 
 
 def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
