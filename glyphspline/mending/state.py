@@ -184,7 +184,7 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
     one, other = old.cubics(), new.cubics()
     if anchors is not None:
         bounds = np.full(len(new), np.nan)
-        _measure(design.corners, one, other, anchors, np.empty((0, 4)), design.tolerance, bounds)
+        _measure(_Pair.at(design.corners, one, other), anchors, np.empty((0, 4)), design.tolerance, bounds)
         return bounds
     bounds = np.zeros(len(new))
     arcs = arcs_of(old, new)
@@ -204,6 +204,27 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
     return bounds
 
 
+class _Pair(NamedTuple):
+    """A contour before and after at V locations.
+
+    Attributes:
+        old, new: (m V, 4, 2) segments, those of a segment after each other. locations: V.
+    """
+
+    old: FloatArray
+    new: FloatArray
+    locations: int
+
+    @classmethod
+    def at(cls, corners: FloatArray, *contours: FloatArray) -> _Pair:
+        """At locations (V, K), of segments (K, m, 4, 2)."""
+        old, new = (
+            np.ascontiguousarray(np.swapaxes(np.tensordot(corners, cubics, axes=1), 0, 1).reshape(-1, 4, 2))
+            for cubics in contours
+        )
+        return cls(old, new, len(corners))
+
+
 def _halves(grid: FloatArray, moves: FloatArray) -> list[FloatArray]:
     """The two parts of a grid of the design space, cut across the axis along which moves (K, N, 2) differ most."""
     axes = range(grid.ndim - 1)
@@ -219,9 +240,9 @@ def _seen(corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, 
     """(s,) certified bounds of segments at single locations (V, K), the largest of all of them."""
     found = np.zeros(len(own))
     for weights in corners:
-        bounds = np.zeros(new.shape[1])
+        pair, bounds = _Pair.at(weights[None], old, new), np.zeros(new.shape[1])
         bounds[own] = np.nan
-        _measure(weights[None], old, new, _anchors(weights[None], old, new), np.empty((0, 4)), tolerance, bounds)
+        _measure(pair, _anchors(pair, old, new), np.empty((0, 4)), tolerance, bounds)
         found = np.maximum(found, bounds[own])
     return found
 
@@ -230,42 +251,34 @@ def _between(
     corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, arcs: FloatArray, tolerance: float
 ) -> FloatArray:
     """(s,) certified bounds of segments at every location between some (V, K)."""
-    anchors, found = _anchors(corners, old, new), np.zeros(len(own))
+    pair, found = _Pair.at(corners, old, new), np.zeros(len(own))
+    anchors = _anchors(pair, old, new)
     if len(corners) == 1:
         arcs = np.empty((0, 4))
     for n, segment in enumerate(own):
         bounds = np.zeros(new.shape[1])
         bounds[segment] = np.nan
-        _measure(corners, old, new, anchors, arcs, tolerance, bounds)
+        _measure(pair, anchors, arcs, tolerance, bounds)
         found[n] = bounds[segment]
     return found
 
 
-def _anchors(corners: FloatArray, old: FloatArray, new: FloatArray) -> FloatArray:
-    """(m + 1, 2) where new segments begin on the new contour, and near which place of the old one, in all corners."""
+def _anchors(pair: _Pair, old: FloatArray, new: FloatArray) -> FloatArray:
+    """(m + 1, 2) where new segments begin on the new contour, and near which place of the old one, at all locations."""
     m = new.shape[1]
     places = np.arange(float(m))
     moved = (old[:, :, 0] != new[:, :, 0]).any(axis=(0, 2))
     if moved.any():
-        one, other = (_rows(corners, each) for each in (old, new))
-        near_places(len(corners), one, places, other, True, 0.0, 0.0, places)
+        near_places(pair.locations, pair.old, places, pair.new, True, 0.0, 0.0, places)
     places = np.where(moved, places, np.arange(m))
     return np.column_stack([np.arange(m + 1.0), np.append(places, places[0] + m)])
 
 
-def _rows(corners: FloatArray, cubics: FloatArray) -> FloatArray:
-    """(m V, 4, 2) segments (K, m, 4, 2) at locations (V, K), those of a segment after each other."""
-    return np.ascontiguousarray(np.swapaxes(np.tensordot(corners, cubics, axes=1), 0, 1).reshape(-1, 4, 2))
-
-
-def _measure(
-    corners: FloatArray, old: FloatArray, new: FloatArray, anchors: FloatArray, arcs: FloatArray, tolerance: float,
-    bounds: FloatArray,
-) -> None:  # fmt: skip
+def _measure(pair: _Pair, anchors: FloatArray, arcs: FloatArray, tolerance: float, bounds: FloatArray) -> None:
     """Write the bounds that are NaN; see :func:`.pair_instances`."""
     m = len(bounds)
     pair_instances(
-        len(corners), _rows(corners, new), offsets_of([m]), _rows(corners, old), offsets_of([old.shape[1]]), anchors,
+        pair.locations, pair.new, offsets_of([m]), pair.old, offsets_of([len(pair.old) // pair.locations]), anchors,
         offsets_of([m + 1]), arcs, SHARPNESS * tolerance, tolerance, bounds, np.zeros(m),
     )  # fmt: skip
 
