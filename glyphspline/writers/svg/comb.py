@@ -110,9 +110,7 @@ def legend(combs: Combs, number: int, reach: float, corners: int = 0, largest: f
     words += f"; left out: the teeth in {counted(corners, 'corner')}" * bool(corners)
     if largest is None:
         return words
-    return (
-        f"{words}; at most {largest:{'.0f' if largest >= 100 else '.3g'}}" if isfinite(largest) else f"{words}; a cusp"
-    )
+    return words + (f"; at most {largest:{'.0f' if largest >= 100 else '.3g'}}" if isfinite(largest) else "; unbounded")
 
 
 def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:

@@ -154,8 +154,8 @@ def _comb(
 
     em, unit = glyph.outline.metrics.units_per_em, 10.0**precision
     least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
-    layers, box, number_cut = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None, 0
-    corners = 0
+    layers, box = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None
+    number_cut = corners = 0
     wanted: tuple[Whose, ...] = ("result", "source") if combs == "both" else (shown_by(combs),)
     for whose in wanted:
         marks = sides_and_corners(glyph, whose, in_corners=in_corners)
