@@ -18,7 +18,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.bezier import evaluate
-from ..curves.contacts import crossing_contacts
+from ..curves.contacts import all_crossings
 from ..curves.crossings import meetings
 from ..curves.cubics import jet, length, split
 from ..curves.integrals import area, integrals
@@ -52,10 +52,7 @@ def enclosed_findings(
         return np.empty((0, 7))
     offsets = segments.offsets
     met, _ = meetings(cubics, offsets, glyphs)
-    touch = ~np.isnan(met[:, 4])
-    crossed, touching = met[~touch, :4], met[touch]
-    if len(touching):
-        crossed = np.concatenate([crossed, crossing_contacts(cubics, offsets, touching)])
+    crossed, touching = all_crossings(cubics, offsets, met), met[~np.isnan(met[:, 4])]
     crosses, lies = np.zeros((2, len(offsets) - 1), dtype=np.bool_)
     crosses[crossed[crossed[:, 0] != crossed[:, 1], :2].astype(np.int64)] = True
     doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)

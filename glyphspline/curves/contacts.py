@@ -3,70 +3,102 @@
 A contact is a set of pairs of chords that touch, each at a place of the two contours or along a stretch, and that hang
 together. At its two ends, which are one point if it is no stretch, the second contour leaves the first one to its left
 or to its right. The contours cross if it leaves to different sides. What side that is, is read from the points at which
-the strands cross a small circle around the end.
+the strands cross a small circle around the end; chords that cross inside these circles are part of what is read there.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from ..compiled import compiled
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .bezier import evaluate
-from .cubics import jet, length
+from .cubics import bernstein, jet, length
 
-STEPS, HALVINGS = 32, 50
-"""Points of a piece that are looked at for where it leaves the circle first. Of an interval of parameters, for the
-point at which a strand crosses the circle."""
+RADIUS = 2e-5
+"""Radius of the largest circle, as a share of the extent: far above the chord errors, far below what contours draw."""
+
+FIRST, SMALLER = 256.0, 16.0
+"""Circles begin with the radius divided by the first, where strands cross at angles that errors of chords which touch
+do not change, and grow by the second: in a small one there are no other contacts."""
+
+STEPS = 1_000
+"""Steps, beside one a piece, after which a strand has left the circle: tens are enough but where it runs along it."""
+
+PLACES = 32
+"""Chords of a piece that say how long it is and how far it goes."""
 
 
-def crossing_contacts(cubics: FloatArray, offsets: IntArray, touching: FloatArray) -> FloatArray:
-    """Of the contacts of contours, those in which they change sides.
+def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> FloatArray:
+    """Where contours cross: chords that do, and contacts in which contours change sides.
 
     Args:
         cubics: (m, 4, 2) segments of all contours. offsets: (C + 1,) where each contour begins.
-        touching: (K, 6) pairs of chords that touch: the contours c <= d, and the places (a, b), (a', b') where the
-            contact of the two chords begins and ends, a <= a'.
+        met: (K, 6) pairs of chords that cross or touch, see :func:`.crossings.meetings`.
 
     Returns:
-        (L, 4) the contours, and the places where a contact begins.
+        (L, 4) the contours, and the places, of a contact those where it begins.
     """
-    # Radius of the circle, as a share of the extent: far above the chord errors, far below what a contour draws.
-    radius = 2e-5 * float(np.abs(cubics).max())
-    found = []
-    for c, d in np.unique(touching[:, :2].astype(np.int64), axis=0).tolist():
-        one, other = (_Strand(cubics[offsets[k] : offsets[k + 1]]) for k in (c, d))
-        for contact in _contacts(touching[(touching[:, :2] == (c, d)).all(axis=1), 2:], one, other, radius):
-            (a, b), (a_end, b_end) = contact.begin, contact.end
-            small = radius
-            if c == d:  # the strands may be the two sides of a fold, or of a small loop
-                small = min(radius, one.reach(a, b) / 2, one.reach(a_end, b_end) / 2)
-                # A contact shorter than this share of the radius is a point. Beside a longer one that ends in a fold,
-                # the strands may cross where it begins.
-                if small < radius and one.reach(a, a_end) > 0.1 * radius:
-                    (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(*at))
-                    if one.reach(a, b) < 2 * radius:
-                        continue
-                    small = radius
-            along = other.way(b, b_end) >= 0
-            # Directions nearer to each other than this, in radians, are the same.
-            circles = [(small, 1e-8)]
-            # In a point, strands may cross plainly, at an angle that chord errors do not change. Then a smaller circle
-            # decides, which leaves out other crossings, as at the tip of a fold.
-            if (a, b) == (a_end, b_end) and radius / 200 < small:
-                circles = [(radius / 200, 0.1), *circles]
-            for size, tied in circles:
-                sides = [
-                    _is_left(one, x, other, y, way, size, tied)
-                    for x, y, way in ((a, b, not along), (a_end, b_end, along))
-                ]
-                if None not in sides:
-                    if sides[0] != sides[1]:
-                        found.append((c, d, a, b))
-                    break
-    return np.array(found, dtype=np.float64).reshape(-1, 4)
+    touches = ~np.isnan(met[:, 4])
+    found = [met[~touches, :4]]
+    largest = RADIUS * float(np.abs(cubics).max(initial=0.0))
+    for pair in np.unique(met[touches, :2].astype(np.int64), axis=0):
+        first, second = pair.tolist()
+        one = _Strand(cubics[offsets[first] : offsets[first + 1]])
+        other = one if first == second else _Strand(cubics[offsets[second] : offsets[second + 1]])
+        its = (met[:, :2] == pair).all(axis=1)
+        left, crossing = met[its & touches, 2:], met[its & ~touches, 2:4]
+        radius = largest / FIRST
+        while len(left) and radius <= largest:
+            undecided = [np.empty((0, 4))]
+            for contact in _contacts(left, one, other, 2 * radius):
+                crosses = _crosses(contact, one, other, radius, largest, crossing)
+                if crosses:
+                    crossing = np.concatenate([crossing, [contact.begin]])
+                    found.append(np.array([[*pair, *contact.begin]]))
+                if crosses is None:
+                    undecided.append(np.array([[*contact.begin, *contact.end]]))
+            left, radius = np.concatenate(undecided), SMALLER * radius
+    return np.concatenate(found)
+
+
+def _crosses(
+    contact: _Contact, one: _Strand, other: _Strand, radius: float, largest: float, known: FloatArray
+) -> bool | None:
+    """Whether contours change sides in a contact, beside the crossings (k, 2) that are known; None if not decided."""
+    (a, b), (a_end, b_end) = contact.begin, contact.end
+    last = radius >= largest
+    # A contact shorter than this share of the radius is a point.
+    long = a != a_end and one.reach(a, a_end) > 0.1 * radius
+    if long and not last:
+        return None
+    small = radius
+    if one is other:  # the strands may be the two sides of a fold, or of a small loop
+        small = min(radius, *(one.reach(*at) / 2 for at in {contact.begin, contact.end}))
+    if small < radius and not last:
+        return None
+    if small < radius and long:  # beside a contact that ends in a fold, the strands may cross where it begins
+        (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(*at))
+        if one.reach(a, b) < 2 * radius:
+            return None
+        small = radius
+    # Directions nearer to each other than this, in radians, are the same: 25 times what the distance of chords that
+    # touch makes of a direction.
+    tied = 1e-8 if last else 5e-6 * largest / radius
+    along = other.way(b, b_end) >= 0
+    first, second = (
+        _exit(one, x, other, y, forward, forward == along, small, tied)
+        for x, y, forward in ((a, b, False), (a_end, b_end, True))
+    )
+    if first.left is None or second.left is None:
+        return None
+    inside = one.between(known[:, 0], first.own, second.own)
+    low, high = (first, second) if along else (second, first)
+    inside &= other.between(known[:, 1], low.other, high.other)
+    return bool((inside.sum() + (first.left != second.left)) % 2)
 
 
 class _Strand:
@@ -74,13 +106,14 @@ class _Strand:
 
     def __init__(self, cubics: FloatArray) -> None:
         self.cubics = cubics
-        legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
-        self.lengths = np.concatenate([[0.0], np.cumsum(legs)])
+        points = np.einsum("kt,mkc->mtc", bernstein(PLACES), cubics)
+        chords = np.hypot(*np.moveaxis(np.diff(points, axis=1), 2, 0))
+        self.lengths = np.concatenate([[0.0], np.cumsum(chords)])
         self.total = float(self.lengths[-1])
 
     def positions(self, places: FloatArray) -> FloatArray:
-        """Lengths of the control polygon up to places (k,), with which they grow."""
-        found: FloatArray = np.interp(places, np.arange(len(self.lengths)), self.lengths)
+        """Lengths along the contour up to places (k,), by chords."""
+        found: FloatArray = np.interp(places * PLACES, np.arange(len(self.lengths)), self.lengths)
         return found
 
     def way(self, place: float, to: float) -> float:
@@ -88,23 +121,30 @@ class _Strand:
         begin, end = self.positions(np.array([place, to])).tolist()
         return float((end - begin + self.total / 2) % self.total - self.total / 2)
 
+    def between(self, places: FloatArray, begin: float, end: float) -> BoolArray:
+        """(k,) which places (k,) one passes on the way from one place forward to another one."""
+        found: BoolArray = (places - begin) % len(self.cubics) <= (end - begin) % len(self.cubics)
+        return found
+
     def reach(self, place: float, to: float) -> float:
         """How far the contour goes from a place on the shorter way to another one: to points of each piece."""
         low, high = (place, to) if self.way(place, to) >= 0 else (to, place)
         high += len(self.cubics) * (high < low)
         ends = np.array([low, *range(int(low) + 1, int(np.ceil(high))), high])
         pieces = ends[:-1].astype(np.int64)
-        x = ends[:-1, None] - pieces[:, None] + np.diff(ends)[:, None] * np.linspace(0, 1, STEPS + 1)
-        chain = self.cubics[np.repeat(pieces % len(self.cubics), STEPS + 1)]
+        x = ends[:-1, None] - pieces[:, None] + np.diff(ends)[:, None] * np.linspace(0, 1, PLACES + 1)
+        chain = self.cubics[np.repeat(pieces % len(self.cubics), PLACES + 1)]
         points = evaluate(chain, x.ravel())
         return float(np.hypot(*(points - points[0]).T).max())
 
 
 @compiled
-def leaving_angle(
+def leaving(
     cubics: FloatArray, centre: float, place: float, forward: bool, radius: float, other: FloatArray
-) -> float:
-    """The angle at which a closed chain leaves a circle, from a place on.
+) -> tuple[float, float]:
+    """The angle at which a closed chain leaves a circle, from a place on, and where.
+
+    It goes in steps after which it cannot have left yet, by its speed and the most that this changes.
 
     Args:
         centre: the circle's, as a place of the chain ``other``.
@@ -112,29 +152,22 @@ def leaving_angle(
     s = min(int(centre), len(other) - 1)
     cx, cy, _, _, _, _ = jet(other, s, centre - s)
     m, s = len(cubics), min(int(place), len(cubics) - 1)
-    inside, end, step = place - s, 1.0 if forward else 0.0, 1 if forward else -1
-    outside = end
-    for _ in range(m + 1):
-        begin, found = inside, False
-        for k in range(1, STEPS + 1):
-            outside = begin + (end - begin) * k / STEPS
-            x, y, _, _, _, _ = jet(cubics, s, outside)
-            if length(x - cx, y - cy) >= radius:
-                found = True
-                break
-            inside = outside
-        if found:
+    t, end, way = place - s, 1.0 if forward else 0.0, 1 if forward else -1
+    for _ in range(m + STEPS):
+        x, y, dx, dy, _, _ = jet(cubics, s, t)
+        left = radius - length(x - cx, y - cy)
+        if left <= 1e-12 * radius:
             break
-        s, inside = (s + step) % m, 1.0 - end
-    for _ in range(HALVINGS):
-        middle = (inside + outside) / 2
-        x, y, _, _, _, _ = jet(cubics, s, middle)
-        if length(x - cx, y - cy) < radius:
-            inside = middle
-        else:
-            outside = middle
-    x, y, _, _, _, _ = jet(cubics, s, outside)
-    return np.arctan2(y - cy, x - cx)
+        change = 0.0
+        for k in range(2):
+            ax = cubics[s, k, 0] - 2 * cubics[s, k + 1, 0] + cubics[s, k + 2, 0]
+            ay = cubics[s, k, 1] - 2 * cubics[s, k + 1, 1] + cubics[s, k + 2, 1]
+            change = max(change, 6 * length(ax, ay))
+        speed = length(dx, dy)
+        t += way * 2 * left / max(speed + np.sqrt(speed * speed + 2 * change * left), 1e-300)
+        if way * (t - end) >= 0:
+            s, t = (s + way) % m, 1.0 - end
+    return np.arctan2(y - cy, x - cx), s + t
 
 
 @dataclass
@@ -163,8 +196,11 @@ class _Contact:
 
 
 def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
-    """Pairs of chords that hang together; see :func:`crossing_contacts`."""
+    """Pairs of chords that hang together; see :func:`all_crossings`."""
     ordered = touching[np.lexsort(touching.T[::-1])]
+    apart = (np.abs(ordered[1:, :2] - ordered[:-1, 2:]) > 1e-12).any(axis=1)  # else one goes on where another one ends
+    starts = np.concatenate([[0], 1 + np.flatnonzero(apart)])
+    ordered = np.concatenate([ordered[starts, :2], ordered[np.append(starts[1:], 0) - 1, 2:]], axis=1)
     along = [one.positions(ordered[:, k]) for k in (0, 2)]
     across = [other.positions(ordered[:, k]) for k in (1, 3)]
     found: list[_Contact] = []
@@ -191,13 +227,26 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     return found
 
 
-def _is_left(
-    one: _Strand, a: float, other: _Strand, b: float, forward: bool, radius: float, tied: float
-) -> bool | None:
-    """Whether a contour leaves another one to its left, from a contact at places a and b; None if along it."""
-    ahead, back = (leaving_angle(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
-    leaves = leaving_angle(other.cubics, a, b, forward, radius, one.cubics)
+class _Exit(NamedTuple):
+    """Where the strands of a contact leave the circle around one of its ends.
+
+    Attributes:
+        own, other: places of both contours. left: whether the second one is to the left of the first one, as this runs;
+            None if they leave together.
+    """
+
+    own: float
+    other: float
+    left: bool | None
+
+
+def _exit(
+    one: _Strand, a: float, other: _Strand, b: float, forward: bool, other_forward: bool, radius: float, tied: float
+) -> _Exit:
+    """Leave a contact from places a and b, on the first contour and on the other one forward or backward."""
+    (ahead, own), (back, behind) = (leaving(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
+    leaves, its = leaving(other.cubics, a, b, other_forward, radius, one.cubics)
     whole = 2 * np.pi
-    if any(abs((leaves - x + np.pi) % whole - np.pi) <= tied for x in (ahead, back)):
-        return None
-    return bool((leaves - ahead) % whole < (back - ahead) % whole)
+    ties = any(abs((leaves - x + np.pi) % whole - np.pi) <= tied for x in (ahead, back))
+    left = None if ties else bool((leaves - ahead) % whole < (back - ahead) % whole)
+    return _Exit(own if forward else behind, its, left)

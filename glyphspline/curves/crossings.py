@@ -8,7 +8,8 @@ left in the end are chords that differ from the curve by less than ``FLAT`` of t
 chords, whatever it is compared with, so the chords of a contour are one polyline.
 
 Two chords cross if the ends of each lie on two sides of the other. If an end lies on the other chord, the strands
-*touch*, in a point or along a stretch: :mod:`.contacts` decides whether they change sides.
+*touch*, in a point or along a stretch. Pieces that are not straight are then halved on, as they may cross twice within
+the errors of chords that touch; :mod:`.contacts` decides whether strands that still touch change sides.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 from ..arrays import ascending, grown
 from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray, IntArray
-from .contacts import crossing_contacts
+from .contacts import all_crossings
 from .cubics import extent, split
 
 FLAT = 1e-9
@@ -34,6 +35,11 @@ MOST_STEPS, MOST_MEETINGS = 20_000_000, 20_000
 
 DEEPER = 9
 """Halvings more of pieces that share a joint and are not decided: loops at joints are smaller than chord errors."""
+
+FINER, MOST_FINER = 5, 24
+"""Halvings more of pieces whose chords touch: strands may cross twice within chord errors. Beyond these halvings
+rounding decides. If more pairs than that touch then and none crosses, strands lie on each other, and touch as they are:
+a chord that lies on another one would become 32 that do."""
 
 STACK = 3 * 3 * (DEEPEST + DEEPER)
 """Pairs to do at a time: each halving adds two at most, to a piece's pair with itself and then to pairs of halves."""
@@ -56,12 +62,8 @@ def crossings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[
         counted from the contour's first, and local parameter. And (G,) whether all of a glyph's were looked for: an
         outline of thousands of coinciding strands would take minutes.
     """
-    found, complete = meetings(cubics, offsets, glyphs)
-    single = np.isnan(found[:, 4])
-    if single.all():
-        return found[:, :4], complete
-    crossed = crossing_contacts(cubics, offsets, found[~single])
-    found = np.concatenate([found[single, :4], crossed])
+    met, complete = meetings(cubics, offsets, glyphs)
+    found = all_crossings(cubics, offsets, met)
     return found[np.lexsort(found.T[::-1])], complete
 
 
@@ -94,6 +96,7 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             after[n - 1] = begin
     left, right, low, high, deep = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n, np.int64)
     flat = FLAT * extent(cubics[offsets[first] : offsets[last]])
+    finest = flat * 0.25**FINER
     for i in range(n):
         b = cubics[piece[i]]
         left[i] = right[i] = b[0, 0]
@@ -108,6 +111,7 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
     A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
     marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
     order, steps = ascending(left), 0
+    coarse, floor = -1, 0  # the row of a pair that touches and is halved on, and its place on the stack
     for oi in range(n):
         i = order[oi]
         for oj in range(oi, n):
@@ -118,9 +122,6 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             if low[j] > high[i] or high[j] < low[i]:
                 continue
             s, t = min(i, j), max(i, j)  # the order of the contours
-            # An end of a chord lies on another chord within this many chord errors of it.
-            # For two straight pieces, instead: what rounding leaves of a distance of 0, as a share of the extent.
-            touch = 4.0 * flat if deep[s] > 0 or deep[t] > 0 else 1e-12 / FLAT * flat
             A[0], B[0] = cubics[piece[s]], cubics[piece[t]]
             marks[0, 0], marks[0, 1] = 0, 0
             marks[0, 2] = (
@@ -128,15 +129,23 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             )
             begins[0, 0], begins[0, 1] = 0.0, 0.0
             top = 0
-            while top >= 0:
+            while top >= 0 or coarse >= 0:
                 if steps > MOST_STEPS or count > MOST_MEETINGS:
                     return found[:0], False
                 steps += 1
+                if coarse >= 0 and top < floor:  # all finer pairs are done: they take the place of the coarse one
+                    if count - coarse <= MOST_FINER + 1 or np.isnan(found[coarse + 1 : count, 4]).any():
+                        found[coarse : count - 1] = found[coarse + 1 : count].copy()
+                        count -= 1
+                    else:
+                        count = coarse + 1
+                    coarse = -1
+                    continue
                 kind = marks[top, 2]
                 if decided(A[top], B[top], kind):
                     top -= 1
                     continue
-                deepest = DEEPER if kind else 0
+                deepest = DEEPER if kind else FINER if coarse >= 0 else 0
                 ended, other_ended = marks[top, 0] >= deep[s] + deepest, marks[top, 1] >= deep[t] + deepest
                 same = back = not kind  # whether both pieces have the same Bézier points, or in reverse
                 for k in range(0 if kind else 4):
@@ -145,13 +154,14 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                 if kind & SELF:
                     top = top - 1 if ended else halve_itself(A, B, marks, begins, top)
                 elif same or back or (ended and other_ended):
-                    x, y, x_end, y_end = -1.0, 0.0, 0.0, 0.0
+                    x, y, x_end, y_end, finer = -1.0, 0.0, 0.0, 0.0, FINER
                     if same or back:
                         x, x_end, y = 0.0, 1.0, 0.0 if same else 1.0
                         y_end = 1.0 - y
                     elif kind == 0:
-                        finer = max(min(marks[top, 0] - deep[s], marks[top, 1] - deep[t]), 0)
-                        x, y, x_end, y_end = meeting(A[top], B[top], touch * 0.25**finer)
+                        straight = is_straight(A[top], finest) and is_straight(B[top], finest)
+                        finer = FINER if straight else max(min(marks[top, 0] - deep[s], marks[top, 1] - deep[t]), 0)
+                        x, y, x_end, y_end = meeting(A[top], B[top], 4.0 * flat * 0.25**finer)
                     if x >= 0.0:
                         found = grown(found, count + 1)
                         found[count, 0], found[count, 1] = contour[s], contour[t]
@@ -162,7 +172,10 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                             found[count, 2 + k] = begin + share * parameter_at(cubic, one)
                             found[count, 4 + k] = begin + share * parameter_at(cubic, other)
                         count += 1
-                    top -= 1
+                    if coarse < 0 and x >= 0.0 and x_end >= 0.0 and finer < FINER:
+                        coarse, floor = count - 1, top
+                    else:
+                        top -= 1
                 elif other_ended or (not ended and legs(A[top]) >= legs(B[top])):
                     top = halve(A, B, marks, begins, top, 0)
                 else:
@@ -190,6 +203,15 @@ def chord_error(cubic: FloatArray) -> float:
     if chord > 0.0 and runs_forward(cubic, cubic) and across + slope * along < whole:
         whole = across + slope * along
     return 0.75 * whole
+
+
+@inlined
+def is_straight(cubic: FloatArray, error: float) -> bool:
+    """Whether the Bézier points of a cubic are within an error of the line along its chord."""
+    x, y = cubic[3, 0] - cubic[0, 0], cubic[3, 1] - cubic[0, 1]
+    one = x * (cubic[1, 1] - cubic[0, 1]) - y * (cubic[1, 0] - cubic[0, 0])
+    other = x * (cubic[2, 1] - cubic[0, 1]) - y * (cubic[2, 0] - cubic[0, 0])
+    return max(abs(one), abs(other)) <= error * np.sqrt(x * x + y * y)
 
 
 @compiled

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial import ConvexHull
 
 import glyphspline as gs
-from glyphspline.curves.crossings import crossings
+from glyphspline.curves.crossings import crossings, meetings
 from glyphspline.curves.cubics import bernstein
 from glyphspline.curves.overshoot import chords
 from glyphspline.outlines.contour_arrays import joined
@@ -159,6 +159,43 @@ def test_crossings_beside_the_tip_of_a_fold_are_found_both() -> None:
         *([a, a, b, b] for a, b in pairwise([(274.42, 993.44), (274.42, 0.0), (280.0, 0.0), (274.62, 993.59)])),
     ]
     assert sorted((int(x), int(y)) for _, (x, y) in crossings_of(np.array(chain))) == [(1, 2), (1, 3)]
+
+
+def test_strands_that_cross_twice_within_chord_errors_are_found() -> None:
+    """There, and back on the other side for a 60th of a unit, by 4e-6 at most."""
+    there = [(662.59, -10.5), (662.32, -12.08), (662.08, -13.5), (662.12, -13.24)]
+    back = [(662.12, -13.24), (662.14, -13.15), (662.19, -12.85), (662.23, -12.5)]
+    around = lines([(662.23, -12.5), (662.23, 0), (663, 0), (662.59, -10.5)])[:3]
+    found = crossings_of(np.concatenate([[there, back], around]))
+    np.testing.assert_allclose([places for _, places in found], [(0.7320862, 1.28354), (0.7417227, 1.2574887)])
+
+
+def test_strands_that_cross_twice_in_one_small_circle_are_found() -> None:
+    """The tip passes its strands by 0.002, and they cross before it twice within 0.006."""
+    there = [(824.37, 93.66), (824.48, 93.61), (824.59, 93.55), (824.55, 93.57)]
+    back = [(824.55, 93.57), (824.53, 93.58), (824.48, 93.61), (824.41, 93.64)]
+    around = lines([(824.41, 93.64), (800, 200), (700, 93), (824.37, 93.66)])[:3]
+    found = [places for _, places in crossings_of(np.concatenate([[there, back], around])) if max(places) < 2]
+    np.testing.assert_allclose(found, [(0.3203735, 1.679629), (0.3300171, 1.6633543)], atol=1e-6)
+
+
+def test_a_nose_at_the_tip_of_a_fold_is_found() -> None:
+    """The tip runs on for 1e-4 before it turns back across the way there, at an angle of 0.002."""
+    there = [(1.98, -0.03), (1.31, -0.02), (0.66, -0.01), (0.65, -0.01)]
+    back = [(0.65, -0.01), (0.64, -0.01), (1.28, -0.01), (1.95, -0.02)]
+    around = lines([(1.95, -0.02), (822.45, -1), (822.45, -2), (1.98, -0.03)])[:3]
+    ((_, places),) = crossings_of(np.concatenate([[there, back], around]))
+    np.testing.assert_allclose(places, (0.9987423, 1.0167236), atol=1e-6)
+
+
+def test_straight_pieces_that_lie_on_each_other_are_not_halved_on() -> None:
+    """Two cubics up one line that turn back on it: a chord error says nothing of their distance."""
+    there = [(304.0, 161.5), (304.0, 161.1), (304.0, 160.69), (304.0, 160.59)]
+    back = [(304.0, 160.59), (304.0, 160.41), (304.0, 161.11), (304.0, 161.97)]
+    chain = np.concatenate([[there, back], lines([(304.0, 161.97), (0, 400), (0, 0), (304.0, 161.5)])[:3]])
+    met, complete = meetings(chain, np.array([0, len(chain)]), np.array([0, 1]))
+    assert complete.all()
+    assert len(met) < 1_800
 
 
 def test_a_loop_within_a_segment_is_found() -> None:
