@@ -120,8 +120,7 @@ def joints(font: TTFont, glyph: str, em: float) -> FloatArray:
     found = [
         joint(before, behind, em)
         for contour in segments(font, glyph)
-        for before, behind in zip([contour[-1], *contour[:-1]], contour, strict=True)
-        if contour
+        for before, behind in zip([*contour[-1:], *contour[:-1]], contour, strict=True)
     ]
     return np.array(found, dtype=np.float64).reshape(-1, 5)
 

@@ -76,9 +76,7 @@ def empty_rows(masters: int, samples: int) -> Rows:
 def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows) -> float:
     """Pair the outline with the curve, in order and in every master by itself; the largest distance.
 
-    Each foot is the nearest point after the foot before it, by Newton's method across the spans. Between two feet the
-    curve is measured too, in several places where they are far apart on it: from loops, and from humps of short spans,
-    no sample is far.
+    Each foot is the nearest point after the foot before it, by Newton's method across the spans.
 
     Args:
         near: the tolerance. known: the feet on a similar curve, as first guesses, if it has any in use.
@@ -101,43 +99,57 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
                 span[j], x[j] = s, at
                 e[j], nx[j], ny[j] = _distance(b, k, s, at, Q[j, 0], Q[j, 1])
             worst = max(worst, abs(e[j]))
-        count = n
-        for j in range(n if closed else n - 1):
-            i = j + 1 if j + 1 < n else 0
-            lap = k if i == 0 else 0
-            step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
-            chord = length(step_x, step_y)
-            own = x[i] * h[_wrapped(span[i] + lap, k) + 2] - x[j] * h[_wrapped(span[j], k) + 2]
-            if span[i] + lap == span[j]:
-                own = (x[i] - x[j]) * h[_wrapped(span[j], k) + 2]
-            for s in range(span[j], span[i] + lap):
-                own += h[_wrapped(s, k) + 2]
-            if chord == 0.0 or own <= 0.0:
-                continue
-            spans = (span[i] + lap + x[i]) - (span[j] + x[j])
-            wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
-            pieces = min(int(wanted) + 2, EXTRA + 1)
-            for r in range(1, pieces):
-                s, whole = span[j], h[_wrapped(span[j], k) + 2]
-                left = own * r / pieces + x[j] * whole
-                while left > whole:
-                    left -= whole
-                    s += 1
-                    whole = h[_wrapped(s, k) + 2]
-                at = left / whole
-                cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
-                along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
-                ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
-                away = length(ex, ey)
-                # Points of the curve between two feet count from this share of the tolerance on.
-                if away > 0.5 * near:
-                    span[count], x[count], e[count] = s, at, away
-                    nx[count], ny[count] = ex / away, ey / away
-                    count += 1
-                    worst = max(worst, away)
-        rows.used[v, 0] = count
+        worst = max(worst, _add_between(Q, b, h, k, closed, near, v, rows))
     if len(samples.Q) > 1:
         worst = max(worst, _measure_slip(curve, rows))
+    return worst
+
+
+@compiled
+def _add_between(
+    Q: FloatArray, b: FloatArray, h: FloatArray, k: int, closed: int, near: float, v: int, rows: Rows
+) -> float:  # fmt: skip
+    """Add rows of master v between the feet of its samples; returns the largest distance of these.
+
+    The curve is measured in several places between feet that are far apart on it: from loops, and from humps of short
+    spans, no sample is far.
+    """
+    n, worst = len(Q), 0.0
+    span, x, e, nx, ny, count = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], n
+    for j in range(n if closed else n - 1):
+        i = j + 1 if j + 1 < n else 0
+        lap = k if i == 0 else 0
+        step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
+        chord = length(step_x, step_y)
+        own = x[i] * h[_wrapped(span[i] + lap, k) + 2] - x[j] * h[_wrapped(span[j], k) + 2]
+        if span[i] + lap == span[j]:
+            own = (x[i] - x[j]) * h[_wrapped(span[j], k) + 2]
+        for s in range(span[j], span[i] + lap):
+            own += h[_wrapped(s, k) + 2]
+        if chord == 0.0 or own <= 0.0:
+            continue
+        spans = (span[i] + lap + x[i]) - (span[j] + x[j])
+        wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
+        pieces = min(int(wanted) + 2, EXTRA + 1)
+        for r in range(1, pieces):
+            s, whole = span[j], h[_wrapped(span[j], k) + 2]
+            left = own * r / pieces + x[j] * whole
+            while left > whole:
+                left -= whole
+                s += 1
+                whole = h[_wrapped(s, k) + 2]
+            at = left / whole
+            cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
+            along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
+            ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
+            away = length(ex, ey)
+            # Points of the curve between two feet count from this share of the tolerance on.
+            if away > 0.5 * near:
+                span[count], x[count], e[count] = s, at, away
+                nx[count], ny[count] = ex / away, ey / away
+                count += 1
+                worst = max(worst, away)
+    rows.used[v, 0] = count
     return worst
 
 

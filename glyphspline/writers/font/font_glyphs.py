@@ -32,9 +32,9 @@ Flavour = Literal["otf", "ttf"]
 ROUNDING = math.sqrt(0.5)
 """Largest distance by which rounding to whole units moves a control point, and so, by convexity, the curve."""
 
-FINE = 64
-"""Parts of a unit to which CFF coordinates are rounded where whole units would break the tolerance. Sums of such
-numbers are exact in the format's 16.16 fixed point."""
+FINE = 65536
+"""Parts of a unit to which CFF coordinates are rounded where whole units would break the tolerance: all that the
+format's 16.16 fixed point has. Fewer would turn stretches that stay as a source has them, where handles are short."""
 
 SHARE = 0.2
 """Of the tolerance: what curves may use that quadratics are made of, and the least that these have. With 0.5 they have
