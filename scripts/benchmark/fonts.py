@@ -108,11 +108,11 @@ def is_kink(rows: FloatArray) -> FloatArray:
 
 
 def segments(font: TTFont, glyph: str) -> list[list[FloatArray]]:
-    """The segments of each contour that have a length."""
+    """The segments of each contour that have a length: more than a thousandth of a unit, which nobody drew."""
     glyphs = font.getGlyphSet()
     pen = SegmentPen(glyphs)
     glyphs[glyph].draw(pen)
-    return [[s for s in map(np.asarray, contour) if np.ptp(s, axis=0).any()] for contour in pen.contours]
+    return [[s for s in map(np.asarray, contour) if np.ptp(s, axis=0).max() > 1e-3] for contour in pen.contours]
 
 
 def joints(font: TTFont, glyph: str, em: float) -> FloatArray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -124,6 +125,26 @@ def test_points_are_on_the_grid_asked_for(precision: int) -> None:
     (found,) = gs.convert(gs.Outline("o", contours=(source,)), options).contours
     scaled = found.curve.points * 10**precision
     np.testing.assert_allclose(scaled, np.rint(scaled), atol=1e-9)
+
+
+def test_sources_off_the_grid_get_no_kink_and_keep_their_digits(tmp_path: Path) -> None:
+    """Rounded nodes beside stretches that stay, or these in 64ths of a unit, would turn."""
+    font = gs.open_font(FONTS / "kouzan-gyosho.otf")
+    results, kept = [], 0
+    for outline, scale in zip(font.outlines(font.select(text="好永龍")), (0.47, 0.7, 0.7), strict=True):
+        contours = tuple(gs.Contour(np.round(scale * each.points, 1), each.degrees) for each in outline.contours)
+        results.append(gs.convert(replace(outline, contours=contours), OPTIONS))
+        for contour in results[-1].contours:
+            old = kinks(contour.source)
+            for x, y, turn in kinks(contour.curve):
+                assert any(np.hypot(a - x, b - y) < 3.0 and turn <= was + 0.05 for a, b, was in old), outline.name
+    write_font(font, results, tmp_path / "new.otf", tolerance=1.024)
+    new = gs.open_font(tmp_path / "new.otf")
+    for result in results:
+        for contour, again in zip(result.contours, new.outline(result.outline.name).contours, strict=True):
+            np.testing.assert_allclose(again.points, contour.curve.points, rtol=0.0, atol=1e-4)
+            kept += int(np.count_nonzero(contour.curve.points != np.rint(contour.curve.points)))
+    assert kept > 100
 
 
 def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArrays, int, int]]:

@@ -386,7 +386,7 @@ def fit_run(
     source, whole = cubics[:, i:j].copy(), True
     before = jumps_of(source, degrees[i:j], closed, em)
     for v in range(masters):
-        whole = whole and on_grid(source[v], degrees[i:j])
+        whole = whole and on_grid(source[v], degrees[i:j], closed)
     last, ends = source, np.arange(n + 1)
     known, fits = np.zeros((n, SEEN, 2)), np.empty((n, SEEN, masters, 4, 2))
     done, until = np.empty((masters, n, 4, 2)), np.zeros(n, np.int64)
@@ -424,7 +424,7 @@ def fit_run(
                 last, ends = found, run.places
             break
     kinds = np.array([degrees[i + ends[s]] if ends[s + 1] == ends[s] + 1 else 3 for s in range(len(ends) - 1)])
-    if masters == 1 and on_grid(last[0], kinds):
+    if masters == 1 and on_grid(last[0], kinds, closed):
         let_meet(last, cubics, degrees, joints, upright, i, closed, ends, start, limits)
     return last, i + ends
 
@@ -467,10 +467,11 @@ def let_meet(
 
 
 @compiled
-def on_grid(cubics: FloatArray, degrees: IntArray) -> bool:
-    """Whether all points of some segments are on the grid."""
-    for s in range(len(cubics)):
-        for k in range(4):
+def on_grid(cubics: FloatArray, degrees: IntArray, closed: bool) -> bool:
+    """Whether all points of a run are on the grid, but for its ends, which stay."""
+    r = len(cubics)
+    for s in range(r):
+        for k in range(0 if s > 0 or closed else 1, 4 if s < r - 1 or closed else 3):
             for axis in range(2):
                 x = cubics[s, k, axis]
                 if abs(x - np.rint(x)) > 1e-6 and (degrees[s] > 1 or k % 3 == 0):
@@ -555,7 +556,7 @@ def fit_contour(
             j += 1
         closed, whole = i == 0 and j == m and not cuts[0], True
         for v in range(masters):
-            whole = whole and on_grid(cubics[v, i:j], degrees[i:j])
+            whole = whole and on_grid(cubics[v, i:j], degrees[i:j], closed)
         if j == i + 1 and not closed and (degrees[i] == 1 or whole):
             run, own = cubics[:, i:j].copy(), np.array([i, j])
         elif not fresh[i:j].any():

@@ -55,7 +55,11 @@ class Measure(NamedTuple):
 
 @compiled
 def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> None:
-    """Round the cubics of a run, whose first node is joint i of the outline."""
+    """Round the cubics of a run, whose first node is joint i of the outline.
+
+    Its ends, and nodes beside cubics that are held, stay where they are, on the grid or not: what they join is as the
+    source has it.
+    """
     r, P = len(run.P), run.P
     measure, c = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r), np.empty((2, 4, 5)), np.empty(2)), np.empty((3, 2))
     for s in range(r):
@@ -66,6 +70,10 @@ def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
         feet(P[s], Q, c, x, np.empty(b - a + 1))
         measure.rest[s] = sample_form(P[s], c, Q, x, np.ones(b - a + 1), tolerance, measure.own[s])
         P[s] = np.rint(P[s])
+        if run.held[s - 1] or (s == 0 and not run.closed):
+            P[s, 0] = measure.exact[s, 0]
+        if run.held[(s + 1) % r] or (s == r - 1 and not run.closed):
+            P[s, 3] = measure.exact[s, 3]
     nodes = r if run.closed else r + 1
     room, best = np.empty((270, 3, 2)), np.empty((3, 2))
     waiting, later = np.ones(nodes, dtype=np.bool_), np.zeros(nodes, dtype=np.bool_)
@@ -330,9 +338,11 @@ def beyond_end(run: Run, s: int, end: int) -> tuple[float, float, float, bool]:
     if not run.closed and (q < 0 or q == r):
         return 0.0, 0.0, np.inf, True
     p = run.P[q % r]
-    if end:
-        return p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], leaving_curvature(p), False
-    return p[2, 0] - p[3, 0], p[2, 1] - p[3, 1], -arriving_curvature(p), False
+    n, h = (0, 1) if end else (3, 2)
+    x, y = p[h, 0] - p[n, 0], p[h, 1] - p[n, 1]
+    if x == 0.0 and y == 0.0:  # a cubic without a handle there
+        return 0.0, 0.0, np.inf, True
+    return x, y, leaving_curvature(p) if end else -arriving_curvature(p), False
 
 
 @compiled
