@@ -17,6 +17,7 @@ import numpy as np
 
 from ..curves.bezier import cross
 from ..types import BoolArray, FloatArray, IntArray
+from .grid import LEAST, Rounding, settle
 from .joints import EXACT, Layout
 from .state import Design
 
@@ -39,20 +40,11 @@ NEAR = 0.5
 SETTLED = 1e-3
 """Radians, or share of curvature, by which bounds may be missed."""
 
+STILL = 1e-3
+"""Steps of the grid by which points move at most in a round that is the last one: bounds may contradict each other."""
+
 SOFT = 1e-9
-"""Share of the dual's diagonal that is added to it, as bounds may contradict each other."""
-
-ALONG = ((20.0, 8), (np.inf, 3))
-"""Steps along its curve by which a point is put elsewhere, by the length of its shortest handle, in steps, too."""
-
-ACROSS = 1.0
-"""Steps by which that is across the curve at most."""
-
-TRIED = 200
-"""Places of the points around a joint, those that seem best, for which all its bounds are computed."""
-
-AS_FOUND = 4.0
-"""Price of the square of what such a joint turns otherwise than before rounding, in what it may turn."""
+"""Share of the dual's diagonal that is added to it, for the same reason."""
 
 HELD, LAST = 0.7, 0.9
 """Shares of the tolerance by which samples of curves move at most: before rounding, which adds to it, and after."""
@@ -62,15 +54,6 @@ WORST = 16
 
 STIFF = 0.1
 """Price of the square of a handle's move against the mean square of what curves move."""
-
-SWEEPS = 2
-"""How often each handle is put on the grid."""
-
-BEYOND = 1e3
-"""Price of the square of a bound that is exceeded on the grid, in bounds."""
-
-LEAST = 1e-3
-"""Radians that the grid makes good for: turns below cost nothing."""
 
 
 class Bound(NamedTuple):
@@ -89,32 +72,40 @@ class Bound(NamedTuple):
     per: FloatArray
 
 
+def values_at(points: FloatArray, is_jump: BoolArray) -> FloatArray:
+    """(B, …) turns in radians, or jumps of curvature, at joints (B, …, 5, 2)."""
+    found = turns_at(points)
+    found[is_jump] = jumps_at(points[is_jump])
+    return found
+
+
+def turns_at(points: FloatArray) -> FloatArray:
+    """(…,) radians by which joints (…, 5, 2) turn."""
+    a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
+    turns: FloatArray = np.arctan2(cross(a, b), (a * b).sum(axis=-1))
+    return turns
+
+
 @np.errstate(invalid="ignore")
-def turns_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(…,) radians by which joints (…, 5, 2) turn, and their derivatives (…, 5, 2): not of handles without length."""
+def turn_slopes(points: FloatArray) -> FloatArray:
+    """(…, 5, 2) derivatives of :func:`turns_at`: not of handles without length."""
     a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
     by_a, by_b = (_turned(v) / (v * v).sum(axis=-1, keepdims=True) for v in (a, b))
     none = np.zeros_like(a)
-    return _turns(points), np.stack([none, by_a, -by_a - by_b, by_b, none], axis=-2)
+    return np.stack([none, by_a, -by_a - by_b, by_b, none], axis=-2)
 
 
-def _turns(points: FloatArray) -> FloatArray:
-    """The turns alone."""
-    a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
-    return np.arctan2(cross(a, b), (a * b).sum(axis=-1))
+def jumps_at(points: FloatArray) -> FloatArray:
+    """(…,) by how much curvature is larger behind joints (…, 5, 2) of cubics than before."""
+    return _curvature(points[..., 2:, :]) + _curvature(points[..., 2::-1, :])
 
 
-def jumps_at(points: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(…,) by how much curvature is larger behind joints (…, 5, 2) of cubics than before, and derivatives (…, 5, 2)."""
+def jump_slopes(points: FloatArray) -> FloatArray:
+    """(…, 5, 2) derivatives of :func:`jumps_at`."""
     slopes = np.zeros_like(points)
     slopes[..., 2::-1, :] = _curvature_slopes(points[..., 2::-1, :])
     slopes[..., 2:, :] += _curvature_slopes(points[..., 2:, :])
-    return _jumps(points), slopes
-
-
-def _jumps(points: FloatArray) -> FloatArray:
-    """The jumps alone."""
-    return _curvature(points[..., 2:, :]) + _curvature(points[..., 2::-1, :])
+    return slopes
 
 
 def curvatures_at(points: FloatArray) -> FloatArray:
@@ -210,13 +201,18 @@ class Stretch:
 
     def excess(self, x: FloatArray, bounds: Sequence[Bound]) -> float:
         """How many times what they may be turns, jumps and moves of samples are at most."""
-        here, weights = self.places_of(x), self.design.places
-        found = [float(np.abs(self.moves(x)).max() / self.design.tolerance)]
-        for bound in bounds:
-            at = np.tensordot(weights, here[:, bound.points], axes=1)
-            values = (_jumps if bound.is_jump else _turns)(at) / bound.per
-            found.append(float((np.abs(values) / np.maximum(bound.most, LEAST)).max()))
-        return max(found)
+        values, _ = self._values(x, bounds)
+        most = np.maximum(np.array([bound.most for bound in bounds]), LEAST)
+        far = np.abs(self.moves(x)).max() / self.design.tolerance
+        return float(max(far, (np.abs(values) / most).max(initial=0.0)))
+
+    def _values(self, x: FloatArray, bounds: Sequence[Bound]) -> tuple[FloatArray, FloatArray]:
+        """(B, L) what is bounded after moves, and (B, L, 5, 2) the points around each joint at each place."""
+        around = self.places_of(x)[:, np.array([bound.points for bound in bounds], dtype=np.int64).reshape(-1, 5)]
+        at = np.swapaxes(np.tensordot(self.design.places, around, axes=1), 0, 1)
+        is_jump = np.array([bound.is_jump for bound in bounds], dtype=np.bool_)
+        per = np.array([bound.per for bound in bounds]).reshape(at.shape[:2])
+        return values_at(at, is_jump) / per, at
 
     def least(self, bounds: Sequence[Bound], most_move: float) -> FloatArray:
         """(K, S, 2) the least moves that keep the bounds, and curves within the tolerance."""
@@ -226,18 +222,15 @@ class Stretch:
         weights = self.design.places
         K, size = len(self.inverse), self.inverse.shape[1]
         x, kept = np.zeros((K, size)), np.zeros((2, len(bounds), len(weights)), dtype=np.bool_)
-        spread = [self.spread[bound.points] for bound in bounds]
+        spread = np.swapaxes(self.spread[[bound.points for bound in bounds]], 1, 2)  # (B, S, 5)
         most, per = np.array([bound.most for bound in bounds]), np.array([bound.per for bound in bounds])
+        is_jump = np.array([bound.is_jump for bound in bounds])
         far, beyond = np.zeros((2, len(self.samples)), dtype=np.bool_), np.zeros((2, K, size), dtype=np.bool_)
         limit = HELD * self.design.tolerance
         sign = np.array([1.0, -1.0])
         for _ in range(ROUNDS):
-            here = self.places_of(x.reshape(K, -1, 2))
-            found = [
-                (jumps_at if bound.is_jump else turns_at)(np.tensordot(weights, here[:, bound.points], axes=1))
-                for bound in bounds
-            ]
-            values, moves = np.array([value for value, _ in found]) / per, self.moves(x)
+            values, at = self._values(x.reshape(K, -1, 2), bounds)
+            moves = self.moves(x)
             over = np.abs(moves).max() - limit, np.abs(x).max() - most_move
             if (np.abs(values) - most).max() < SETTLED and max(over) < SETTLED * limit:
                 break
@@ -250,10 +243,10 @@ class Stretch:
                 held.reshape(2, -1)[(value.ravel()[worst] > 0).astype(np.int64), worst] = True
             # Those with sign c + sign J x >= -most, linearised, are A x >= b.
             side, which, place = np.nonzero(kept)
-            slopes = np.empty((len(which), size))
-            for n, part in enumerate(spread):
-                by = found[n][1][place[which == n]]  # (R', 5, 2)
-                slopes[which == n] = (part.T @ by).reshape(-1, size)
+            joints = at[which, place]
+            slopes = turn_slopes(joints)
+            slopes[is_jump[which]] = jump_slopes(joints[is_jump[which]])
+            slopes = (spread[which] @ slopes).reshape(-1, size)
             scale = sign[side] / per[which, place]
             if not (np.isfinite(slopes).all() and np.isfinite(values).all()):
                 break  # a handle lost its length
@@ -276,100 +269,32 @@ class Stretch:
                 held[held] = dual[first : first + rows] > 0
                 first += rows
             share = np.minimum(1.0, self.room / np.maximum(np.abs(new - x).max(axis=1, keepdims=True), EXACT))
-            x += share * (new - x)
+            change = share * (new - x)
+            x += change
+            if np.abs(change).max() < STILL * self.design.step:
+                break
         return x.reshape(K, -1, 2)
 
     def on_grid(self, x: FloatArray, bounds: Sequence[Bound], most_move: float) -> FloatArray:
-        """(K, S, 2) moves to places on the grid so near those of ``x`` that keep the bounds best; see ``ALONG``."""
-        old, step = self.layout.points[:, self.free], self.design.step
-        found = np.where(self.frozen, 0.0, np.round((old + x) / step) * step - old)
-        turns = {bound.joint: bound.most for bound in bounds if not bound.is_jump}
-        index = {point: s for s, point in enumerate(self.free.tolist())}
-        for _ in range(SWEEPS):
-            before = found.copy()
-            for joint in self.joints.tolist():
-                around = self.layout.around(joint)[1:4].tolist()
-                own = [index.get(point, -1) for point in around]
-                if max(own) < 0:
-                    continue
-                for k in range(len(old)):
-                    most = turns[joint][self.design.places[:, k].argmax()] if joint in turns else np.pi
-                    tried = self._near(found, k, x, around, own, most, most_move)
-                    if len(tried) > 1:
-                        found[k] = tried[self._merit(found, k, tried, x, bounds).argmin()]
-            if (before == found).all():
-                break
-        return found
-
-    def _near(
-        self, found: FloatArray, k: int, x: FloatArray, around: Sequence[int], own: Sequence[int], most: float,
-        most_move: float,
-    ) -> FloatArray:  # fmt: skip
-        """(n, S, 2) moves of master k of which the points around one joint are put on other places on the grid.
-
-        They are the ``TRIED`` for which the joint turns little in this master, and curves move by little.
-        """
-        step, points = self.design.step, self.layout.points[k, around]
-        best = points + [x[k, s] if s >= 0 else np.zeros(2) for s in own]
-        arms = np.hypot(*np.diff(best, axis=0).T) / step
-        along = best[2] - best[0]
-        along = along / max(float(np.hypot(*along)), EXACT)
-        sets = []
-        for n, s in enumerate(own):
-            if s < 0:
-                sets.append(points[n : n + 1])
-                continue
-            reach = next(reach for length, reach in ALONG if arms[max(n - 1, 0) : n + 1].min() <= length)
-            steps = np.arange(-reach, reach + 1) * step
-            middle = np.where(self.frozen[k, s], points[n], np.round(best[n] / step) * step)
-            axes = [np.zeros(1) if held else steps for held in self.frozen[k, s]]
-            near = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2) + middle
-            keep = (np.abs(cross(near - middle, along)) <= ACROSS * step) & (
-                np.hypot(*(near - points[n]).T) <= most_move
-            )
-            keep |= (near == points[n] + found[k, s]).all(axis=1)
-            sets.append(near[keep])
-        at = np.stack(np.meshgrid(*(np.arange(len(each)) for each in sets), indexing="ij"), axis=-1).reshape(-1, 3)
-        places = np.stack([each[at[:, n]] for n, each in enumerate(sets)], axis=1)  # (n, 3, 2)
-        a, b = np.swapaxes(np.diff(np.concatenate([best[None], places]), axis=1), 0, 1)
-        turn = np.arctan2(cross(a, b), (a * b).sum(axis=1))
-        price = (AS_FOUND * (turn[1:] - turn[0]) / (most + LEAST)) ** 2
-        chosen = [n for n, s in enumerate(own) if s >= 0]
-        free = [own[n] for n in chosen]
-        off = (found[k] - x[k]).copy()
-        off[free] = 0.0
-        cost = self.cost[k].reshape(len(off), 2, len(off), 2)
-        moved = (places[:, chosen] - best[chosen]).reshape(len(places), -1)
-        block = cost[free][:, :, free].reshape(moved.shape[1], -1)
-        pull = np.tensordot(off, cost[:, :, free], axes=2).reshape(-1)
-        price += (((moved @ block) + 2 * pull) * moved).sum(axis=1) / step**2
-        if len(price) > TRIED:
-            places = places[np.argpartition(price, TRIED)[:TRIED]]
-        tried = np.repeat(found[k][None], len(places), axis=0)
-        tried[:, free] = places[:, chosen] - points[chosen]
-        return tried
-
-    def _merit(self, x: FloatArray, k: int, tried: FloatArray, best: FloatArray, bounds: Sequence[Bound]) -> FloatArray:
-        """(n,) prices of moves (n, S, 2) of master k beside those of all others."""
-        off, weights = (tried - best[k]).reshape(len(tried), -1), self.design.places
-        total = ((off @ self.cost[k]) * off).sum(axis=1) / self.design.step**2
-        here, change = self.places_of(x), tried - x[k]
-        acts, moved = np.flatnonzero(weights[:, k]), np.flatnonzero(change.any(axis=(0, 2)))
-        change = change[:, moved]
-        slopes = self.samples[:, k].reshape(-1, len(self.free), 2)[:, moved].reshape(-1, 2 * len(moved))
-        own = slopes.any(axis=1)  # what does not depend on the points that are tried is the same for all
-        moves = self.moves(x)[own] + change.reshape(len(tried), -1) @ slopes[own].T  # (n, R')
-        total += BEYOND * (np.maximum(np.abs(moves) / (LAST * self.design.tolerance) - 1, 0.0) ** 2).sum(axis=1)
-        for bound in bounds:
-            part = self.spread[bound.points][:, moved]
-            if not part.any():
-                continue
-            at = np.tensordot(weights[acts], here[:, bound.points], axes=1)  # (l, 5, 2)
-            every = at + weights[acts, k][:, None, None] * (part @ change)[:, None]  # (n, l, 5, 2)
-            value = np.abs((_jumps if bound.is_jump else _turns)(every) / bound.per[acts])
-            most = bound.most[acts] + LEAST
-            total += (BEYOND * np.maximum(value / most - 1, 0.0) ** 2 + (value / most) ** 2).sum(axis=1)
-        return total
+        """(K, S, 2) moves to places on the grid so near those of ``x`` that keep the bounds best; see :mod:`.grid`."""
+        layout, design = self.layout, self.design
+        old = layout.points[:, self.free]
+        near = np.where(self.frozen, 0.0, np.round((old + x) / design.step) * design.step - old)
+        number = np.full(layout.points.shape[1], -1)
+        number[self.free] = np.arange(len(self.free))
+        before, best, points = (
+            np.ascontiguousarray(each).view(np.complex128)[..., 0]
+            for each in (layout.points, self.places_of(x), self.places_of(near))
+        )
+        contiguous = np.ascontiguousarray
+        settle(points, Rounding(
+            before, best, number, layout.implied, contiguous(self.frozen),
+            np.array([layout.around(joint)[1:4] for joint in self.joints.tolist()]), contiguous(design.places),
+            np.array([bound.points for bound in bounds]).reshape(-1, 5), np.array([bound.is_jump for bound in bounds]),
+            np.array([bound.most for bound in bounds]), np.array([bound.per for bound in bounds]),
+            contiguous(self.cost), contiguous(self.samples), LAST * design.tolerance, design.step, most_move,
+        ))  # fmt: skip
+        return (points - before)[:, self.free, None].view(np.float64)
 
 
 def _basis(degree: int) -> tuple[FloatArray, FloatArray]:

@@ -312,7 +312,7 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
         at = np.tensordot(design.places, layout.points[:, around], axes=1)
         if np.abs(np.diff(at[:, 1:4], axis=1)).max(axis=2).min() <= EXACT:
             continue
-        turns, own = np.abs(turns_at(at)[0]), joint in group.joints
+        turns, own = np.abs(turns_at(at)), joint in group.joints
         if own and group.kind == "kink":
             most = turns_allowed(layout, joint, group.values[joint], way.exact, design)
             most *= LOOSE if len(layout.points) > 1 else 0.0
@@ -327,7 +327,7 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
             per = np.maximum(ends.min(axis=0) if meets else ends.max(axis=0), limits.jump / design.em)
             most = LOOSE * np.maximum(limits.relative_jump, limits.jump / design.em / per)
             if not meets:
-                most = np.maximum(most, np.abs(jumps_at(at)[0]) / per)
+                most = np.maximum(most, np.abs(jumps_at(at)) / per)
             found.append(Bound(joint, around, True, most, per))
     return found
 

@@ -197,6 +197,15 @@ def checks() -> None:
     on_axes([family], {}, ["wght"], 2, Thresholds())
 
 
+def mending() -> None:
+    """A kink mended, of an outline, which is one master."""
+    from ..mending.mend import mend
+
+    checks()
+    points = np.array([[0.0, 0], [0, 262], [161, 563], [300, 500], [424, 435], [600, 292], [600, 0]])
+    mend(Outline("kink", contours=(Contour(points, np.array([3, 3, 1])),)), tolerance=5.0)
+
+
 def comparisons() -> None:
     """Outlines compared: one moved, one that lacks a contour."""
     from ..comparing.compare import compare
@@ -256,6 +265,7 @@ WORK: dict[str, Callable[[], Any]] = {
     "g2": fonts,
     "sharp_best": lambda: converted(Options(effort="best")),
     "fixed": lambda: converted(Options(step=20.0)),
+    "mending": mending,
     "unfitted": unfitted,
 }
 """The kinds of work. Those that take long come first, and neighbours share little: two processes that begin together
