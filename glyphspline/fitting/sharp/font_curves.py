@@ -457,7 +457,9 @@ def let_meet(
             continue
         run.held[:] = True
         run.held[a] = run.held[q] = False
-        bad = misses(run.P.copy().reshape((1, r, 4, 2)), run, cubics, i, limits, 0.999)
+        tried = run.P.copy().reshape((1, r, 4, 2))
+        bad = misses(tried, run, cubics, i, limits, 0.999)
+        mark_turns(tried, run, cubics, joints, i, limits.mixes, bad)  # without a handle, the other one turns an end
         for side in range(2):
             s = q if side else a
             bad[s] = bad[s] or (crosses_handles(run.P[s]) and not crosses_handles(old[side]))

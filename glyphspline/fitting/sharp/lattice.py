@@ -338,11 +338,9 @@ def beyond_end(run: Run, s: int, end: int) -> tuple[float, float, float, bool]:
     if not run.closed and (q < 0 or q == r):
         return 0.0, 0.0, np.inf, True
     p = run.P[q % r]
-    n, h = (0, 1) if end else (3, 2)
-    x, y = p[h, 0] - p[n, 0], p[h, 1] - p[n, 1]
-    if x == 0.0 and y == 0.0:  # a cubic without a handle there
-        return 0.0, 0.0, np.inf, True
-    return x, y, leaving_curvature(p) if end else -arriving_curvature(p), False
+    if end:
+        return p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], leaving_curvature(p), False
+    return p[2, 0] - p[3, 0], p[2, 1] - p[3, 1], -arriving_curvature(p), False
 
 
 @compiled
