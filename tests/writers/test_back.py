@@ -20,6 +20,7 @@ from glyphspline.runs.jobs.masters import convert_font_masters
 from glyphspline.runs.schedule import workers
 from glyphspline.runs.spec import RunSpec
 from glyphspline.writers.back.glif import Glif
+from glyphspline.writers.back.nodes import Node, replaced
 from tests.drawings import circle
 from tests.places import FONTS
 
@@ -173,6 +174,17 @@ def test_what_is_fitted_for_fonts_goes_back_point_for_point(tmp_path: Path) -> N
     assert [len(contour) for contour in written] == [len(contour.curve) for contour in fitted.contours]
     em = source.metrics.units_per_em
     assert sum(map(len, written)) < sum(len(with_extrema(contour.curve, em)) for contour in fitted.contours)
+
+
+def test_points_that_stay_keep_their_flags() -> None:
+    """A line runs into a curve as whole units allow, off by a sixth of a degree: the point is marked smooth."""
+    start, end, corner = (306, 109), (311, 325), (500, 109)
+    old = [Node(start, "line"), Node(end, "line", True), Node((312, 374), None), Node((400, 400), None)]
+    old.append(Node(corner, "curve"))
+    parts = [[start, end], [end, (312, 373), (401, 400), corner], [corner, start]]
+    new = gs.Contour.from_segments([np.array(part, dtype=np.float64) for part in parts])
+    (nodes,) = replaced([old], [new], [frozenset()], 0)
+    assert [(node.at, node.smooth) for node in nodes if node.kind] == [(start, False), (end, True), (corner, False)]
 
 
 def test_what_no_whole_units_are_near_keeps_its_decimals(tmp_path: Path) -> None:

@@ -47,7 +47,8 @@ def replaced(
 
     Args:
         old: its nodes, by master. new: its new curves, rounded here to ``digits`` decimals.
-        held: places at which a point has to stay, by master. keeps_flags: points that stay are smooth if they were.
+        held: places at which a point has to stay, by master. keeps_flags: points that stay are smooth
+            if they were. Without it those that are smooth now are so, too.
     """
     if any(node.kind == "move" for nodes in old for node in nodes):
         return "is open"
@@ -58,10 +59,11 @@ def replaced(
     starts = rounded[0].points[rounded[0].offsets]
     shift = 0 if first is None else int(np.hypot(*(starts - first).T).argmin())
     smooth = smooth_ends(rounded)
-    if keeps_flags:
-        flags = {node.at: node.smooth for node in old[0] if node.kind}
-        places = rounded[0].points[rounded[0].offsets].tolist()
-        smooth = [flags.get((x, y), flag) for (x, y), flag in zip(places, smooth, strict=True)]
+    flags = {node.at: node.smooth for node in old[0] if node.kind}
+    places = rounded[0].points[rounded[0].offsets].tolist()
+    smooth = [
+        flags.get((x, y), flag) or (flag and not keeps_flags) for (x, y), flag in zip(places, smooth, strict=True)
+    ]
     made = [nodes_of(contour, smooth, shift) for contour in rounded]
     before = [_from_the_curve(nodes) for nodes in old]
     as_given = [nodes_of(contour, smooth, shift) for contour in new]  # what stays may have more decimals
