@@ -89,11 +89,12 @@ class Contour:
         """The contour in the opposite direction from the same start point."""
         return Contour(np.roll(self.points[::-1], 1, axis=0), self.degrees[::-1])
 
-    def draw(self, pen: Any) -> None:
-        """Draw with any fontTools segment pen."""
+    def draw(self, pen: Any, closing: bool = True) -> None:
+        """Draw with any fontTools segment pen; ``closing``: with a last line, which ``closePath`` implies."""
         closed = [tuple(point) for point in np.concatenate([self.points, self.points[:1]]).tolist()]
         pen.moveTo(closed[0])
-        for offset, degree in zip(self.offsets.tolist(), self.degrees.tolist(), strict=True):
+        drawn = len(self) - (not closing and len(self) > 1 and self.degrees[-1] == 1)
+        for offset, degree in zip(self.offsets[:drawn].tolist(), self.degrees[:drawn].tolist(), strict=True):
             to = closed[offset + 1 : offset + degree + 1]
             (pen.lineTo, pen.qCurveTo, pen.curveTo)[degree - 1](*to)
         pen.closePath()

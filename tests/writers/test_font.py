@@ -21,7 +21,7 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Outline
 from glyphspline.readers import AnySource, open_font, open_source
 from glyphspline.writers.font.font_file import FontSummary, to_font, write_font
-from glyphspline.writers.font.font_glyphs import Flavour, fitting_tolerance, oriented
+from glyphspline.writers.font.font_glyphs import Flavour, char_string, fitting_tolerance, oriented
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
 from tests.readers.test_fonts import two_sided_distance
@@ -298,6 +298,12 @@ def test_a_glyph_of_a_cff_table_that_cannot_be_drawn_costs_only_itself(
         0,
         len(source.outline(source.glyph_names[4]).contours),
     ]
+
+
+def test_a_char_string_leaves_the_line_back_to_the_start_to_the_end_of_the_contour() -> None:
+    square = gs.Contour(np.array([[0.0, 0.0], [90.0, 0.0], [90.0, 80.0], [0.0, 80.0]]), np.ones(4, dtype=np.int64))
+    stored = char_string([square], None, 1, "square")
+    assert stored.program == [0, "hmoveto", 90, 80, -90, "hlineto", "endchar"]
 
 
 def test_char_strings_store_what_they_have_in_common_once() -> None:

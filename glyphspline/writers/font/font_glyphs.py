@@ -183,7 +183,7 @@ def char_string(contours: Sequence[Contour], width: float | None, parts: int, na
     stored = [Contour(on_grid(contour.points, parts), contour.degrees) for contour in raised]
     check_size([point for contour in stored for point in (*contour.points, contour.points[0])], name)
     for contour in stored:
-        contour.draw(pen)
+        contour.draw(pen, closing=False)
     return pen.getCharString(optimize=not any(map(doubles_back, stored)))
 
 
