@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import astuple, dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, overload
@@ -336,6 +336,7 @@ def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
     return turns
 
 
+@cache
 def grid_of(axis: DesignAxis) -> FloatArray:
     """Normalised values of an axis, even in user space, with those where its mapping bends."""
     # Places along an axis, evenly in user space, at which the largest turn of all joints is kept.

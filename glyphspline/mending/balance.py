@@ -46,7 +46,7 @@ STILL = 1e-3
 SOFT = 1e-9
 """Share of the dual's diagonal that is added to it, for the same reason."""
 
-HELD, LAST = 0.7, 0.9
+HELD, LAST = 0.7, 0.8
 """Shares of the tolerance by which samples of curves move at most: before rounding, which adds to it, and after."""
 
 WORST = 16

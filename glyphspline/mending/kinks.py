@@ -252,9 +252,11 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
                     continue
                 seen.add(points.tobytes())
                 proposal = _proposal(group, first, layout, points, design)
-                if proposal is not None and proposal.change <= SMALL * design.em / 1000:
+                if proposal is None:
+                    continue
+                if proposal.change <= SMALL * design.em / 1000:
                     yield proposal
-                elif proposal is not None:
+                else:
                     later.append(proposal)
                 break
         yield from sorted(later, key=lambda each: each.change)

@@ -80,7 +80,7 @@ def mend(
     check_kinds(kinds)
     require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
     masters = Masters.of(glyph) if isinstance(glyph, Outline) else glyph
-    found, changes = mended(masters, kinds, tolerance, thresholds, outer)
+    found, changes = mended(masters, State.of(masters, thresholds, outer), kinds, tolerance, thresholds, outer)
     if found is masters:
         return glyph, changes
     return (replace(glyph, contours=found.master(0).contours) if isinstance(glyph, Outline) else found), changes
@@ -94,12 +94,11 @@ def check_kinds(kinds: Collection[str]) -> None:
 
 
 def mended(
-    masters: Masters, kinds: Collection[str], tolerance: float | None, thresholds: Thresholds, outer: int,
+    masters: Masters, state: State, kinds: Collection[str], tolerance: float | None, thresholds: Thresholds, outer: int,
     into: Into = ANYWHERE,
 ) -> tuple[Masters, list[Change]]:  # fmt: skip
-    """As :func:`mend`; ``into``: what it goes back into."""
+    """As :func:`mend`; ``state``: what is found in it. ``into``: what it goes back into."""
     tolerance = PER_EM * masters.metrics.units_per_em if tolerance is None else tolerance
-    state = State.of(masters, thresholds, outer)
     if not any(state.values[kind] for kind in kinds):
         return masters, []
     glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds, into.step), thresholds, outer, into)

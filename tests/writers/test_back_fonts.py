@@ -19,6 +19,7 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli.commands import app
 from glyphspline.mending.mend import mended
+from glyphspline.mending.state import State
 from glyphspline.runs.jobs.mend import into_of
 from glyphspline.writers.back.char_strings import unflexed
 from tests.places import FONTS
@@ -157,7 +158,8 @@ def test_blends_change_in_a_variable_font_of_cubics(tmp_path: Path) -> None:
     strings["a"].decompile()
     assert "hstem" in strings["a"].program
     masters = gs.open_font(font).masters("a")
-    expected, _ = mended(masters, ["kink"], 5.0, gs.Thresholds(), 1, into_of(gs.open_font(font), masters))
+    state, into = State.of(masters, gs.Thresholds(), 1), into_of(gs.open_font(font), masters)
+    expected, _ = mended(masters, state, ["kink"], 5.0, gs.Thresholds(), 1, into)
     assert np.allclose(expected.contours[0].points, gs.open_font(new).masters("a").contours[0].points, atol=1e-4)
 
 

@@ -13,7 +13,7 @@ from ...errors import OutputError
 from ...files import writing
 from ...mending.fewer import EDITED
 from ...mending.mend import check_kinds, mended
-from ...mending.state import DIGITS, Change, Into
+from ...mending.state import DIGITS, Change, Into, State
 from ...outlines.masters import Masters
 from ...readers import Font
 from ...readers.designspace import Designspace
@@ -61,9 +61,9 @@ class MendJob(Job[Head, list[Mended]]):
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""
-        found = []
-        for masters, into in contents:
-            new, changes = mended(masters, self.kinds, self.tolerance, self.thresholds, self.outer, into)
+        found, states = [], State.of_many([masters for masters, _ in contents], self.thresholds, self.outer)
+        for (masters, into), state in zip(contents, states, strict=True):
+            new, changes = mended(masters, state, self.kinds, self.tolerance, self.thresholds, self.outer, into)
             moved = None if new is masters else new
             found.append(Mended(masters if moved else None, moved, [c for c in changes if c.why != OF_COMPONENT]))
         return found
