@@ -11,8 +11,10 @@ import os
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
+from typing import Any
 
 import numpy as np
+from fontTools import subset
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
@@ -26,14 +28,19 @@ from .faithful import fewest, forge_results, inside, numbers, to_em
 from .measure import Row
 
 LATIN = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789&"
-HAN = "".join(map(chr, range(0x4E00, 0x9F00, 420)))
+HAN = "".join(map(chr, range(0x4E00, 0x9F00, 105)))
 FACES = {
-    "EB Garamond": ("EBGaramond12-Regular.otf", LATIN), "STIX": ("STIXGeneral-Regular.otf", LATIN),
-    "Latin Modern": ("lmroman10-regular.otf", LATIN), "Libertine": ("LinLibertine_R.otf", LATIN),
-    "Inter": ("Inter-Regular.otf", LATIN), "DejaVu Serif": ("DejaVuSerif.ttf", LATIN), "cmr10": ("cmr10.ttf", LATIN),
-    "Noto Serif CJK": ("NotoSerifCJK-Regular.ttc", HAN),
+    "EB Garamond": ("EBGaramond12-Regular.otf", LATIN), "EB Garamond Italic": ("EBGaramond12-Italic.otf", LATIN),
+    "STIX": ("STIXGeneral-Regular.otf", LATIN), "Latin Modern": ("lmroman10-regular.otf", LATIN),
+    "Latin Modern Italic": ("lmroman10-italic.otf", LATIN), "Libertine": ("LinLibertine_R.otf", LATIN),
+    "Libertine Bold Italic": ("LinLibertine_RBI.otf", LATIN), "Inter": ("Inter-Regular.otf", LATIN),
+    "DejaVu Serif": ("DejaVuSerif.ttf", LATIN), "Gentium Italic": ("GentiumPlus-Italic.ttf", LATIN),
+    "Noto Serif CJK": ("NotoSerifCJK-Regular.ttc", HAN), "Noto Sans CJK": ("NotoSansCJK-Regular.ttc", HAN),
+    "LXGW WenKai": ("LXGWWenKai-Regular.ttf", HAN),
 }  # fmt: skip
-"""Files and characters."""
+"""Files and characters. Of large fonts a subset is written."""
+LARGE = 10_000
+"""Glyphs of a large font."""
 
 OPTIONS = gs.Options(**FOR_FONTS)
 FORGED = int(os.environ.get("GLYPHSPLINE_BENCH_FORGED", "63"))
@@ -49,6 +56,24 @@ def rows() -> list[Row]:
 
 def face_rows(name: str, path: Path, text: str) -> list[Row]:
     """Totals of a face."""
+    with TemporaryDirectory() as folder:
+        if len(gs.open_font(path).glyph_names) > LARGE:
+            path = subset_of(path, text, Path(folder))
+        return whole_rows(name, path, text)
+
+
+def subset_of(path: Path, text: str, folder: Path) -> Path:
+    """A font of some characters of the first face of another."""
+    options = subset.Options(font_number=0, notdef_outline=True, glyph_names=True)
+    font, subsetter = subset.load_font(str(path), options), subset.Subsetter(options)
+    subsetter.populate(text=text)
+    subsetter.subset(font)
+    font.save(folder / "subset.font")
+    return folder / "subset.font"
+
+
+def whole_rows(name: str, path: Path, text: str) -> list[Row]:
+    """Totals of a font."""
     font = gs.open_font(path)
     glyphs = [outline for outline in font.outlines(font.select(text=text)) if outline.contours]
     gs.convert(glyphs[0], OPTIONS)
@@ -79,15 +104,17 @@ def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: A
     """What is in the written file, against the source's."""
     em, new, jumps, old_jumps = font.metrics.units_per_em, 0, 0, 0
     before, after = (TTFont(file, fontNumber=0) for file in (source, made))
-    counts, order = np.zeros(2), (before.getGlyphOrder(), after.getGlyphOrder())
+    counts, sets = np.zeros(2), [each.getGlyphSet() for each in (before, after)]
     for glyph in glyphs:
         number = font.glyph_names.index(glyph)
-        old, own = (joints(each, names[number], em) for each, names in zip((before, after), order, strict=True))
-        for k, (each, names) in enumerate(zip((before, after), order, strict=True)):
-            if "glyf" in before:
-                counts[k] += len(each["glyf"][names[number]].getCoordinates(each["glyf"])[0])
-            else:
-                counts[k] += sum(len(s) > 2 for contour in segments(each, names[number]) for s in contour)
+        names = [each.getGlyphOrder()[number] for each in (before, after)]
+        drawn = [segments(each, one) for each, one in zip(sets, names, strict=True)]
+        old, own = (joints(contours, em) for contours in drawn)
+        if "glyf" in before:
+            tables = [each["glyf"] for each in (before, after)]
+            counts += [len(table[each].getCoordinates(table)[0]) for table, each in zip(tables, names, strict=True)]
+        else:
+            counts += [sum(len(s) > 2 for contour in contours for s in contour) for contours in drawn]
         kinks = own[is_kink(own)]
         there = old[is_kink(old)]
         for x, y, turn, *_ in kinks:
@@ -97,6 +124,9 @@ def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: A
     if ("glyf" in before) == ("glyf" in after):
         what = "points" if "glyf" in before else "curves"
         rows.append(Row(f"{name}: {what} / source's", counts[1] / counts[0], "x", 1.0, 0.85, False))
+        table = "glyf" if "glyf" in before else "CFF "
+        old_bytes, new_bytes = (each.reader.tables[table].length for each in (before, after))
+        rows.append(Row(f"{name}: bytes of outlines / source's", new_bytes / old_bytes, "x", 1.0, 0.85, False))
         if "CFF " in after:
             rows.append(Row(f"{name}: jumps of curvature / source's", jumps / max(old_jumps, 1), "x", 0.1, 0.03, False))
     return rows
@@ -107,19 +137,18 @@ def is_kink(rows: FloatArray) -> FloatArray:
     return (rows[:, 2] >= 0.5) & (rows[:, 2] <= 12) & (rows[:, 4] == 0)
 
 
-def segments(font: TTFont, glyph: str) -> list[list[FloatArray]]:
+def segments(glyphs: Any, glyph: str) -> list[list[FloatArray]]:
     """The segments of each contour that have a length: more than a thousandth of a unit, which nobody drew."""
-    glyphs = font.getGlyphSet()
     pen = SegmentPen(glyphs)
     glyphs[glyph].draw(pen)
     return [[s for s in map(np.asarray, contour) if np.ptp(s, axis=0).max() > 1e-3] for contour in pen.contours]
 
 
-def joints(font: TTFont, glyph: str, em: float) -> FloatArray:
+def joints(contours: list[list[FloatArray]], em: float) -> FloatArray:
     """(n, 5) place, turn in degrees, whether the curvature jumps there, and whether both sides are lines."""
     found = [
         joint(before, behind, em)
-        for contour in segments(font, glyph)
+        for contour in contours
         for before, behind in zip([*contour[-1:], *contour[:-1]], contour, strict=True)
     ]
     return np.array(found, dtype=np.float64).reshape(-1, 5)
