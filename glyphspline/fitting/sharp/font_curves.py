@@ -450,13 +450,13 @@ def let_meet(
     for s in range(r):
         k = (i + places[s]) % m
         stays[s] = start[k] >= 4 or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
-    for node in range(2 * r):  # twice: one that does not meet may do so when its neighbours have
+    for node in range(2 * r):  # once more by nearby places: one that does not meet may do so when others have
         a, q = (node - 1) % r, node % r
         if q == 0 and not closed:
             continue
         if stays[a] or stays[q] or a == q or joint_turn(P[0, a : a + 1], P[0, q : q + 1]) > SMOOTH_KINK:
             continue
-        for wide in range(WIDEST + 1):
+        for wide in range(WIDEST + 1 if node < r else 1):
             if end_jump(P[0, a], P[0, q], em) <= 0.1:
                 break
             settled, ease = np.ones(r, np.bool_), np.ones(r + 1)
