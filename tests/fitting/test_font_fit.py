@@ -15,9 +15,9 @@ import glyphspline as gs
 from glyphspline.cli.groups import for_fonts
 from glyphspline.curves.cubics import hidden_extrema, turns
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.fitting.sharp.font_curves import Limits, misses
 from glyphspline.fitting.sharp.font_fit import ONE, of_points, quadratic_points, stored_points
 from glyphspline.fitting.sharp.harmony import FIXED, Run, end_jump
+from glyphspline.fitting.sharp.run_gates import Limits, misses
 from glyphspline.outlines.contour_arrays import ContourArrays
 from glyphspline.types import FloatArray
 from glyphspline.writers.font.font_file import write_font

@@ -25,10 +25,11 @@ from ..measures import distance_columns
 from ..options import Options
 from ..results import ConvertedContours, not_fitted
 from .corners import NO_HANDLE, find_joints
-from .font_curves import CORNER, KEPT, Limits, cut_at, fit_contour, mixed
-from .font_curves import KINK as KINKED
+from .font_curves import KEPT, cut_at, fit_contour
 from .font_quadratics import Stored
 from .font_quadratics import fit_contour as fit_quadratics
+from .run_gates import CORNER, Limits, mixed
+from .run_gates import KINK as KINKED
 from .settings import EFFORTS, LONG_LINE, Settings
 
 GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)

@@ -26,8 +26,9 @@ from ...outlines.segments import farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import NO_HANDLE, SMOOTH_KINK, Joints, find_joints
 from .cubics import solve
-from .font_curves import CORNER, alone, mixed, set_upright, turn_between
+from .font_curves import alone, set_upright
 from .nearness import add_samples, certified, reweight, shared_feet, squares
+from .run_gates import CORNER, mixed, turn_between
 from .settings import Settings
 
 NEAR = (0.7, 0.35, 0.35, 0.0)
