@@ -38,13 +38,10 @@ FACES = {
     "Noto Serif CJK": ("NotoSerifCJK-Regular.ttc", HAN), "Noto Sans CJK": ("NotoSansCJK-Regular.ttc", HAN),
     "LXGW WenKai": ("LXGWWenKai-Regular.ttf", HAN),
 }  # fmt: skip
-"""Files and characters. Of large fonts a subset is written."""
-LARGE = 10_000
-"""Glyphs of a large font."""
+"""Files and characters. Of Han faces a subset is written."""
 
 OPTIONS = gs.Options(**FOR_FONTS)
-FORGED = int(os.environ.get("GLYPHSPLINE_BENCH_FORGED", "63"))
-"""Glyphs of a face that FontForge simplifies."""
+FORGED = int(os.environ.get("GLYPHSPLINE_BENCH_FORGED", "63"))  # glyphs of a face that FontForge simplifies
 
 
 def rows() -> list[Row]:
@@ -57,28 +54,18 @@ def rows() -> list[Row]:
 def face_rows(name: str, path: Path, text: str) -> list[Row]:
     """Totals of a face."""
     with TemporaryDirectory() as folder:
-        if len(gs.open_font(path).glyph_names) > LARGE:
-            path = subset_of(path, text, Path(folder))
-        return whole_rows(name, path, text)
+        if text == HAN:
+            whole, path = path, Path(folder, "subset.font")
+            subset.main([str(whole), "--font-number=0", f"--text={text}", "--glyph-names", f"--output-file={path}"])
+        return font_rows(name, path, text)
 
 
-def subset_of(path: Path, text: str, folder: Path) -> Path:
-    """A font of some characters of the first face of another."""
-    options = subset.Options(font_number=0, notdef_outline=True, glyph_names=True)
-    font, subsetter = subset.load_font(str(path), options), subset.Subsetter(options)
-    subsetter.populate(text=text)
-    subsetter.subset(font)
-    font.save(folder / "subset.font")
-    return folder / "subset.font"
-
-
-def whole_rows(name: str, path: Path, text: str) -> list[Row]:
+def font_rows(name: str, path: Path, text: str) -> list[Row]:
     """Totals of a font."""
     font = gs.open_font(path)
     glyphs = [outline for outline in font.outlines(font.select(text=text)) if outline.contours]
     gs.convert(glyphs[0], OPTIONS)
-    start = process_time()
-    results = gs.convert_many(glyphs, OPTIONS)
+    start, results = process_time(), gs.convert_many(glyphs, OPTIONS)
     spent = (process_time() - start) / len(glyphs)
     quadratic = all((outline.arrays.degrees < 3).all() for outline in glyphs)
     found, note = [], f"{len(glyphs)} glyphs"
@@ -115,9 +102,8 @@ def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: A
             counts += [len(table[each].getCoordinates(table)[0]) for table, each in zip(tables, names, strict=True)]
         else:
             counts += [sum(len(s) > 2 for contour in contours for s in contour) for contours in drawn]
-        kinks = own[is_kink(own)]
         there = old[is_kink(old)]
-        for x, y, turn, *_ in kinks:
+        for x, y, turn, *_ in own[is_kink(own)]:
             new += not ((np.hypot(there[:, 0] - x, there[:, 1] - y) < 3e-3 * em) & (there[:, 2] > turn - 0.3)).any()
         jumps, old_jumps = jumps + int(own[:, 3].sum()), old_jumps + int(old[:, 3].sum())
     rows = [Row(f"{name}: kinks that the source has not", new, "", 0, None, False)]
@@ -165,9 +151,9 @@ def joint(before: FloatArray, behind: FloatArray, em: float) -> tuple[float, ...
 
 def end_of(points: FloatArray) -> tuple[FloatArray, float]:
     """Where a segment leaves its first point to, and with which curvature."""
-    arm = next(p - points[0] for p in points[1:] if (p != points[0]).any())
-    if len(points) == 2:
+    arm, n = next(p - points[0] for p in points[1:] if (p != points[0]).any()), len(points) - 1
+    if n == 1:
         return arm, 0.0
-    a, b, n = points[1] - points[0], points[2] - points[1], len(points) - 1
+    a, b = points[1] - points[0], points[2] - points[1]
     size = np.hypot(*a)
     return arm, float((n - 1) / n * (a[0] * b[1] - a[1] * b[0]) / size**3) if size else np.inf
