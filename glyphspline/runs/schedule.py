@@ -97,10 +97,11 @@ def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: boo
     """The kinds of work of :mod:`.warm` in a run with these options; None: nothing is converted."""
     if options is None:
         return []
+    quadratics = ["quadratics"] if "ttf" in formats else []
     if masters:
-        return ["masters", *(["g2"] if options.is_for_fonts else [])]
-    rest = ["rest"] if options.remove_overlaps else []
-    if formats and not needs_fit(formats):
+        return ["masters", *(["g2"] if options.is_for_fonts else []), *quadratics]
+    rest = [*quadratics, *(["rest"] if options.remove_overlaps else [])]
+    if formats and not needs_fit(formats, options):
         return ["unfitted", *rest]
     fit = "g2" if options.is_for_fonts else options.corners
     best = [f"{options.corners}_best"] if options.effort == "best" and not options.is_for_fonts else []

@@ -61,9 +61,11 @@ def is_folder(name: str) -> bool:
     return name in OF_RUNS or is_format(name)
 
 
-def needs_fit(formats: Sequence[str]) -> bool:
-    """Whether any of these formats shows more than outlines as the font has them."""
-    return not all(is_format(name) and not format_named(name).fitted for name in formats)
+def needs_fit(formats: Sequence[str], options: Options) -> bool:
+    """Whether any of these formats is made of fitted curves: others show outlines as the font has them, and with
+    continuity "g2" a TTF is made of these too."""
+    others = [name for name in formats if not (name == "ttf" and options.is_for_fonts)]
+    return not all(is_format(name) and not format_named(name).fitted for name in others)
 
 
 @dataclass(frozen=True)
@@ -172,8 +174,8 @@ class RunSpec:
 
     @cached_property
     def is_fitted(self) -> bool:
-        """Whether anything is fitted: any of the formats shows more than outlines as the font has them."""
-        return self.is_back or needs_fit(self.formats)
+        """Whether the workers fit curves."""
+        return self.is_back or self.masters or needs_fit(self.formats, self.options)
 
     @cached_property
     def folders(self) -> tuple[str, ...]:

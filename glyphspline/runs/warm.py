@@ -155,12 +155,11 @@ def drawings() -> None:
     polygon_document(glyph)
 
 
-def fonts() -> None:
-    """What fonts store: cubics, and quadratics."""
+def quadratics() -> None:
+    """What a TTF stores."""
     from ..fitting.sharp.font_fit import quadratic_points
 
-    options = Options(corners="sharp", continuity="g2", tolerance=0.3)
-    converted(options)
+    options = Options(corners="sharp", continuity="g2")
     quadratic_points(Outline("round", contours=(ROUND,)).arrays, options, 1.0, 1000.0)
 
 
@@ -262,7 +261,8 @@ WORK: dict[str, Callable[[], Any]] = {
     "smooth": lambda: converted(Options(corners="smooth")),
     "masters": masters,
     "smooth_best": lambda: converted(Options(corners="smooth", effort="best")),
-    "g2": fonts,
+    "g2": lambda: converted(Options(corners="sharp", continuity="g2", tolerance=0.3)),
+    "quadratics": quadratics,
     "sharp_best": lambda: converted(Options(effort="best")),
     "fixed": lambda: converted(Options(step=20.0)),
     "mending": mending,

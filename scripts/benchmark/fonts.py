@@ -18,10 +18,12 @@ from fontTools import subset
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
+from glyphspline.fitting.convert import unfitted
 from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.readers import AnySource
 from glyphspline.types import FloatArray
 from glyphspline.writers.font.font_file import write_font
+from glyphspline.writers.font.font_glyphs import drawn_result
 
 from ..survey import SegmentPen, faces
 from .faithful import fewest, forge_results, inside, numbers, to_em
@@ -64,15 +66,18 @@ def font_rows(name: str, path: Path, text: str) -> list[Row]:
     """Totals of a font."""
     font = gs.open_font(path)
     glyphs = [outline for outline in font.outlines(font.select(text=text)) if outline.contours]
-    gs.convert(glyphs[0], OPTIONS)
-    start, results = process_time(), gs.convert_many(glyphs, OPTIONS)
-    spent = (process_time() - start) / len(glyphs)
-    quadratic = all((outline.arrays.degrees < 3).all() for outline in glyphs)
+    quadratic, near = all((outline.arrays.degrees < 3).all() for outline in glyphs), font.metrics.units_per_em / 1000
+    fit: Any = unfitted if quadratic else gs.convert_many  # as the command does for the one font that is written
+    for some in (glyphs[:1], glyphs):
+        start, results = process_time(), fit(some, OPTIONS)
+        for result in results if quadratic else ():
+            drawn_result(result, near, "ttf", None)
+        spent = (process_time() - start) / len(some)
     found, note = [], f"{len(glyphs)} glyphs"
     for flavour in ("ttf",) if quadratic else ("otf", "ttf"):
         with TemporaryDirectory() as folder:
             file = Path(folder, f"new.{flavour}")
-            write_font(font, results, file, tolerance=font.metrics.units_per_em / 1000)
+            write_font(font, results, file, tolerance=near)
             found += written_rows(f"{name}, {flavour}", path, file, [g.name for g in glyphs], font)
     if not quadratic:
         few = [to_em(outline) for outline in glyphs[:: max(1, len(glyphs) // FORGED)]]

@@ -12,11 +12,12 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.errors import OutputError
-from glyphspline.fitting.options import Options
+from glyphspline.fitting.options import FOR_FONTS, Options
 from glyphspline.outlines.extrema import with_extrema
 from glyphspline.readers import open_font
 from glyphspline.readers.svg import SvgDrawings
 from glyphspline.readers.ufo import Ufo
+from glyphspline.runs.folder import entries_of
 from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.runs.spec import RunSpec
@@ -38,6 +39,16 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
         f"KouzanGyoshoSubset-spline.{name}" for name in ("ufo", "otf", "ttf", "parquet")
     ]
     return folder
+
+
+def test_a_ttf_alone_is_made_of_outlines_and_nothing_is_fitted_that_it_does_not_use(tmp_path: Path) -> None:
+    font, options, made = open_font(FONTS / "kouzan-gyosho.ttf"), Options(**FOR_FONTS), []
+    for formats in (("ttf",), ("ttf", "json")):
+        out = tmp_path / formats[-1]
+        convert_font(font, font.select(text="gO"), out, RunSpec(options, formats), jobs=0)
+        made.append((out / "KouzanGyoshoSubset-spline.ttf").read_bytes())
+        assert [entry["contours"] is None for entry in entries_of(out)] == [formats == ("ttf",)] * 2
+    assert made[0] == made[1]
 
 
 def test_all_formats_of_one_run_hold_the_same_outlines(out: Path) -> None:
