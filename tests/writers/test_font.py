@@ -12,6 +12,7 @@ import pytest
 import uharfbuzz as hb
 from fontTools.feaLib.builder import addOpenTypeFeaturesFromString
 from fontTools.pens.boundsPen import BoundsPen, ControlBoundsPen
+from fontTools.pens.recordingPen import RecordingPen
 from fontTools.ttLib import TTFont, newTable
 from fontTools.ttLib.tables.ttProgram import Program
 
@@ -20,7 +21,7 @@ from glyphspline.curves.integrals import area
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Outline
 from glyphspline.readers import AnySource, open_font, open_source
-from glyphspline.writers.font.font_file import FontSummary, to_font, write_font
+from glyphspline.writers.font.font_file import FontSummary, share_subroutines, to_font, write_font
 from glyphspline.writers.font.font_glyphs import Flavour, char_string, fitting_tolerance, oriented
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
@@ -332,3 +333,33 @@ def test_tables_that_are_broken_inside_are_an_error_that_names_the_font(tmp_path
     source = open_font(tmp_path / "broken.ttf")
     with pytest.raises(GlyphsplineError, match=r"broken\.ttf: a broken font: "):
         to_font(source, [], "ttf")
+
+
+def test_char_strings_with_decimals_keep_them_beside_shared_subroutines() -> None:
+    def drawings(font: TTFont) -> list[Any]:
+        strings = list(font["CFF "].cff.topDictIndex[0].CharStrings.values())
+        pens = [RecordingPen() for _ in strings]
+        for string, pen in zip(strings, pens, strict=True):
+            string.draw(pen)
+        return [(string.width, pen.value) for string, pen in zip(strings, pens, strict=True)]
+
+    def saved(font: TTFont) -> TTFont:
+        font.save(file := BytesIO())
+        return TTFont(file)
+
+    font = TTFont(FONTS / "kouzan-gyosho.otf")
+    font["CFF "].cff.desubroutinize()
+    strings = font["CFF "].cff.topDictIndex[0].CharStrings
+    stated, implied = font.getGlyphOrder()[1:3]
+    for name, width in ((stated, [7]), (implied, [])):
+        shape = [10.00390625, 20, "rmoveto", *[30.0078125, 5, -4.001953125, 60, 50, 9] * 2, "rrcurveto", "endchar"]
+        strings[name].setProgram([*width, *shape])
+        private = strings[name].private
+        advance = private.nominalWidthX + width[0] if width else private.defaultWidthX
+        font["hmtx"][name] = (advance, font["hmtx"][name][1])
+    before = saved(font)
+    expected, size = drawings(before), before.reader.tables["CFF "].length
+    assert share_subroutines(font)
+    after = saved(font)
+    assert drawings(after) == expected
+    assert after.reader.tables["CFF "].length < size

@@ -11,6 +11,7 @@ continuity "g2" it keeps its components.
 from __future__ import annotations
 
 import logging
+import math
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from fontTools.fontBuilder import FontBuilder
+from fontTools.misc.psCharStrings import T2WidthExtractor
 from fontTools.pens.basePen import NullPen
 from fontTools.ttLib import TTFont, newTable
 from fontTools.varLib.instancer import instantiateVariableFont
@@ -159,7 +161,8 @@ class _InPlace:
         self.is_g2 = self.is_g2 or result.options.is_for_fonts
         if stays(result, self.flavour):
             return Drawn(None, None, 0.0)
-        drawn = drawn_result(result, tolerance, self.flavour, self._width(name), extrema)
+        width = stored_width(self.font, name, self.strings[name].private) if self.flavour == "otf" else None
+        drawn = drawn_result(result, tolerance, self.flavour, width, extrema)
         if self.flavour == "ttf":
             self.new[name] = drawn.data
         else:
@@ -168,14 +171,6 @@ class _InPlace:
             put_string(self.strings, name, drawn.data)
         set_bearings(self.font, name, drawn, result.outline)
         return drawn
-
-    def _width(self, name: str) -> float | None:
-        """The advance as a char string stores it: relative to the nominal width, or None for the default."""
-        if self.flavour == "ttf":
-            return None
-        private = self.strings[name].private
-        advance = self.font["hmtx"][name][0]
-        return None if advance == private.defaultWidthX else advance - private.nominalWidthX
 
     def finish(self) -> None:
         if self.flavour != "ttf":
@@ -213,24 +208,54 @@ def _grew(font: TTFont, data: bytes) -> bool:
 def share_subroutines(font: TTFont) -> bool:
     """Store what char strings have in common once, as subroutines, by Adobe's ``tx``: new char strings have none.
 
-    Fonts with decimals keep the subroutines they have, as ``tx`` rounds to hundredths; then it is False.
+    Those with decimals, which ``tx`` rounds to hundredths, are put back as they were, and share nothing. Returns
+    whether ``tx`` could do it; if not, the font is not to be written.
     """
     from cffsubr import Error, subroutinize
 
+    exact = _with_decimals(font)
+    try:
+        subroutinize(font)
+    except Error as error:
+        log.warning("char strings share no subroutines: %s", error)
+        return False
+    strings = font["CFF "].cff.topDictIndex[0].CharStrings
+    for name, drawing in exact.items():
+        width = stored_width(font, name, strings[name].private)
+        strings[name].setProgram([*([] if width is None else [width]), *drawing])
+    return True
+
+
+def _with_decimals(font: TTFont) -> dict[str, list[Any]]:
+    """The char strings that have decimals, without subroutines and without their widths, by the names of the glyphs."""
     top = font["CFF "].cff.topDictIndex[0]
     privates = [each.Private for each in getattr(top, "FDArray", [top])]
     parts = [top.GlobalSubrs, *(each.Subrs for each in privates if hasattr(each, "Subrs")), top.CharStrings.values()]
     programs = [string for part in parts for string in part]
     for string in programs:
         string.decompile()
-    if any(isinstance(token, float) for string in programs for token in string.program):
-        return False
-    try:
-        subroutinize(font)
-    except Error as error:
-        log.warning("char strings share no subroutines: %s", error)
-        return False
-    return True
+    if not any(map(has_decimals, programs)):
+        return {}
+    font["CFF "].cff.desubroutinize()
+    found = {}
+    for name in top.CharStrings.keys():  # noqa: SIM118 (CharStrings iterates by numbers)
+        string = top.CharStrings[name]
+        if has_decimals(string):
+            extractor = T2WidthExtractor([], [], 0, math.inf)
+            extractor.execute(string)
+            found[name] = string.program[extractor.width < math.inf :]
+    return found
+
+
+def has_decimals(string: Any) -> bool:
+    """Whether a number of a char string is not whole."""
+    return any(isinstance(token, float) for token in string.program)
+
+
+def stored_width(font: TTFont, name: str, private: Any) -> float | None:
+    """The advance as a char string stores it: relative to the nominal width, or None for the default."""
+    advance = font["hmtx"][name][0]
+    return None if advance == private.defaultWidthX else advance - private.nominalWidthX
 
 
 def _empty_broken(strings: Any) -> None:
