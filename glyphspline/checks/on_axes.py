@@ -27,6 +27,10 @@ OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
 OF_SMOOTH = (JUMP, TURN)
 """Kinds that a joint has only if it is a corner in no master."""
 
+NEAR = 1e-4
+"""How far a handle in whole units may be from them: CFF2 stores what a raised quadratic has in 65536ths. With less,
+such outlines have kinks that those of ``glyf`` have not."""
+
 
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
@@ -149,17 +153,23 @@ def by_rounding(default: FloatArray, here: FloatArray, degrees: IntArray) -> flo
     """Standard deviation in degrees of a joint that rounding turns, see :func:`.segments.rounding_turn`.
 
     It is 0 where the default master is not in whole units. Deltas are whole too. Those of points between others are
-    not, but no farther off.
+    not, but no farther off. A cubic may be a quadratic in whole units that was raised, as CFF2 has those of ``glyf``.
 
     Args:
         default, here: (2, 4, 2) in the default master and where it is looked at, of :func:`.turns.joint_controls`.
         degrees: (2,) of the segments before and behind.
     """
-    handles = 3 / degrees[:, None] * (default[:, 1] - default[:, 0])  # segments are raised to cubics
-    if np.abs(handles - np.rint(handles)).max() > 1e-6:
+    handles = default[:, 1] - default[:, 0]
+    shares = np.where((degrees == 3) & (off_grid(handles) > NEAR), 1.5, 3 / degrees)  # segments are raised to cubics
+    if off_grid(shares[:, None] * handles).max() > NEAR:
         return 0.0
-    before, behind = 3 / degrees * np.hypot(*(here[:, 1] - here[:, 0]).T)
+    before, behind = shares * np.hypot(*(here[:, 1] - here[:, 0]).T)
     return float(np.degrees(rounding_turn(before, behind)))
+
+
+def off_grid(handles: FloatArray) -> FloatArray:
+    """(n,) how far handles, (n, 2), are from whole units."""
+    return np.asarray(np.abs(handles - np.rint(handles)).max(axis=1))
 
 
 def _worst(rows: Measured) -> Measured:

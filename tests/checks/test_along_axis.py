@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.checks.kinks import along_axis, places_along
+from glyphspline.checks.on_axes import by_rounding
 from glyphspline.cli import app
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.writers.figures.axis_pages import (
@@ -152,3 +153,15 @@ def test_an_axis_of_no_range_is_drawn_at_its_default(tmp_path: Path) -> None:
         done = runner.invoke(app, call)
     assert done.exit_code == 0, done.output
     assert (tmp_path / "a.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_rounding_turns_a_raised_quadratic_as_it_turns_the_quadratic() -> None:
+    def turn(share: float, degree: int) -> float:
+        controls = np.zeros((2, 4, 2))
+        controls[:, 1] = np.rint(65536 * share * np.array([(10, 3), (-7, -2)])) / 65536
+        return by_rounding(controls, controls, np.array([degree, degree]))
+
+    assert turn(2 / 3, 3) == pytest.approx(turn(2 / 3, 2), rel=1e-4)
+    assert turn(2 / 3, 3) == pytest.approx(turn(1.0, 3), rel=1e-4)
+    assert turn(2 / 3, 3) > 1
+    assert turn(0.9, 3) == 0
