@@ -265,6 +265,21 @@ def test_a_line_ends_earlier_where_the_grid_has_no_control_point_along_it_near_i
     assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
 
 
+def test_no_control_point_is_on_a_point_of_the_curve_where_its_leg_would_turn_unseen() -> None:
+    """A serif ten units wide, on whose top the grid has hardly a place for two quadratics."""
+    points = [
+        [61, 310], [61, 300], [63, 293], [68, 293], [77, 293], [88, 304], [91, 308], [118, 342], [132, 345], [142, 345],
+        [150, 345], [158, 342], [162, 327], [196, 198], [61, 190],
+    ]  # fmt: skip
+    source = gs.Contour(np.array(points, dtype=np.float64), np.array([3, 3, 3, 3, 1, 1, 1]))
+    (found,), far = quadratic_points(gs.Outline("x", contours=(source,)).arrays, OPTIONS, 1.0, 1000.0)
+    made = of_points(*found)
+    assert np.abs(np.diff(found[0], axis=0)).max(axis=1).min() > 0
+    assert all(p == [91.0, 308.0] and turn < 1.6 for *p, turn in kinks(gs.Contour(made.points, made.degrees)))
+    assert kinks(source)[0][:2] == (91.0, 308.0)
+    assert far <= 1.0
+
+
 def test_a_truetype_font_of_cubics_is_within_the_tolerance(tmp_path: Path) -> None:
     font = gs.open_font(FONTS / "kouzan-gyosho.otf")
     names = font.select(text="永g好")

@@ -642,8 +642,12 @@ def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tup
     chain, skip = mixed(given.corners, P), np.zeros(R, np.bool_)
     arc = np.array([0.0, R, i, j]) if K > 1 else np.empty(0)
     far = certified(V, chain, hints, stays, skip, False, given.outline, arc, 0.999 * tolerance)
-    bad = ~(far <= 0.999 * tolerance)
+    bad, kinks = ~(far <= 0.999 * tolerance), 0
     for s in range(R):
+        for end in range(2):
+            # A control point on a node has no leg there whose turn is seen below.
+            if not q.held[s] and (q.c[:, s] == q.node[:, s + end]).all():
+                bad[s], kinks = True, kinks + 1
         for w in range(K):
             for axis in range(2):
                 bad[s] = bad[s] or abs(q.c[w, s, axis] - np.rint(q.c[w, s, axis])) > 1e-6
@@ -653,7 +657,6 @@ def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tup
                 (ax, ay), (bx, by) = mean(weights, before), mean(weights, behind)
                 if turn_between(ax, ay, bx, by) > WORSE:
                     bad[s] = bad[s - 1] = True
-    kinks = 0
     for end in range(2):
         k, s = j if end else i, (R - 1) * end
         if q.held[s]:
