@@ -204,14 +204,13 @@ def inside(contours: Iterable[Iterable[Any]]) -> int:
     return sum(hidden_extrema(np.asarray(s, dtype=np.float64)) for c in contours for s in c if len(s) == 4)
 
 
-def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int, int]:
-    """Segments, numbers and extrema inside cubics of the result with the fewest numbers that stays within one unit."""
+def fewest(glyph: gs.Outline, results: list[list[list[Any]]]) -> tuple[int, int, list[list[Any]]]:
+    """Segments and numbers of the result with the fewest numbers that stays within one unit, or the source; and it."""
     source = sampled((s for c in glyph.contours for s in c.segments()), SPACING)
     sizes = [(sum(2 * (len(s) - 1) for c in r for s in c), sum(map(len, r)), k) for k, r in enumerate(results)]
     for size, segments, k in sorted(sizes):
         curve = sampled((np.array(s) for c in results[k] for s in c), SPACING)
         pairs = (curve, source), (source, curve)
         if len(curve) and all(distances(*pair, closed=False).max() <= 1.0 for pair in pairs):
-            return segments, size, inside(results[k])
-    source_inside = inside(c.segments() for c in glyph.contours)
-    return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours)), source_inside
+            return segments, size, results[k]
+    return sum(map(len, glyph.contours)), sum(map(numbers, glyph.contours)), [[*c.segments()] for c in glyph.contours]

@@ -81,14 +81,17 @@ def font_rows(name: str, path: Path, text: str) -> list[Row]:
             found += written_rows(f"{name}, {flavour}", path, file, [g.name for g in glyphs], font)
     if not quadratic:
         few = [to_em(outline) for outline in glyphs[:: max(1, len(glyphs) // FORGED)]]
-        forge = np.array([fewest(g, r) for g, r in zip(few, forge_results(few), strict=True)], dtype=np.float64)
+        forge = [fewest(g, r) for g, r in zip(few, forge_results(few), strict=True)]
         made = [gs.convert(g, OPTIONS) for g in few]
-        own = np.array([[len(r.arrays.curves.degrees), sum(numbers(c.curve) for c in r.contours)] for r in made])
-        share = np.median(own / forge[:, :2], axis=0)
-        hidden = [sum(inside(c.segments() for c in g.contours) for g in few), int(forge[:, 2].sum())]
-        hidden.append(sum(inside(c.curve.segments() for c in r.contours) for r in made))
-        about = "median of the glyphs; extrema inside curves: source {}, FontForge {}, here {}".format(*hidden)
-        found.append(Row(f"{name}: numbers / FontForge's", share[1], "x", 1.0, 0.92, False, about))
+        share = np.median([sum(numbers(c.curve) for c in r.contours) / f[1] for r, f in zip(made, forge, strict=True)])
+        own = [[[*c.curve.segments()] for c in r.contours] for r in made]
+        words = "extrema inside curves, kinks and jumps: source {}, {}, {}; FontForge {}, {}, {}; here {}, {}, {}"
+        about = "median of the glyphs; " + words.format(
+            *faults([[*c.segments()] for g in few for c in g.contours]),
+            *faults([contour for *_, each in forge for contour in each]),
+            *faults([contour for each in own for contour in each]),
+        )
+        found.append(Row(f"{name}: numbers / FontForge's", share, "x", 1.0, 0.92, False, about))
     return [*found, Row(f"{name}: fast, a glyph", spent * 1e3, "ms", 10 if text == HAN else 4, None, False, note)]
 
 
@@ -121,6 +124,13 @@ def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: A
         if "CFF " in after:
             rows.append(Row(f"{name}: jumps of curvature / source's", jumps / max(old_jumps, 1), "x", 0.1, 0.03, False))
     return rows
+
+
+def faults(contours: list[list[Any]]) -> tuple[int, int, int]:
+    """Extrema inside curves, kinks and jumps of curvature of contours in an em of 1,000."""
+    long = [[s for s in map(np.asarray, contour) if np.ptp(s, axis=0).max() > 1e-3] for contour in contours]
+    found = joints(long, 1000)
+    return inside(contours), int(is_kink(found).sum()), int(found[:, 3].sum())
 
 
 def is_kink(rows: FloatArray) -> FloatArray:
