@@ -101,7 +101,11 @@ from fontTools.ttLib import TTFont
 
 def operations(drawn):
     for kind, to in drawn:
+        handles_alone = bool(to) and to[-1] is None  # no point on the curve: halfway between two handles is one
         to = [np.array(p, dtype=float) for p in to if p is not None]
+        if handles_alone:
+            to.append((to[-1] + to[0]) / 2)
+            yield "moveTo", to[-1:]
         for part in decomposeQuadraticSegment(to) if kind == "qCurveTo" else [to]:
             yield kind, part
 
