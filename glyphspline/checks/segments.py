@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..curves.bezier import AT_END
 from ..outlines.contour_arrays import ContourArrays
 from ..types import ComplexArray, FloatArray, IntArray
@@ -255,7 +255,7 @@ def turn_of(a: complex, b: complex) -> float:
     return np.arctan2(both.imag, both.real) if a != 0 and b != 0 else np.nan
 
 
-@compiled
+@inlined
 def least_kink(a: complex, b: complex, limit: float, deviations: float) -> float:
     """From which turn between two handles on a joint kinks: the limit, or what rounding to whole units may make."""
     return max(limit, deviations * rounding_turn(length(a), length(b))) if is_whole(a) and is_whole(b) else limit
@@ -286,7 +286,7 @@ def rounding_variance(a: complex, b: complex, c: complex) -> float:
     return DEVIATION**2 * (height + 8 * (end_curvature(a, b, c) / d) ** 2)
 
 
-@compiled
+@inlined
 def off_level(a: complex, b: complex, before: complex, behind: complex) -> float:
     """How far the handles of an extreme point are off level, the farther one; 0 if it is none.
 

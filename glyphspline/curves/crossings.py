@@ -259,7 +259,7 @@ def halve(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top
     return top + 1
 
 
-@compiled
+@inlined
 def halve_itself(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int) -> int:
     """Replace a piece's pair with itself by those of its halves, with themselves and with each other."""
     split(A[top], 0.5, A[top + 1])

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled, inlined
-from ..types import FloatArray
+from ..types import BoolArray, FloatArray
 from .cubics import CLOSE, STEPS, jet, nearest, newton_step
 
 COARSE = 8
@@ -102,13 +102,13 @@ def near_place(V: int, chain: FloatArray, place: float, low: float, high: float,
 
 @compiled
 def near_places(
-    V: int, chain: FloatArray, hints: FloatArray, other: FloatArray, closed: bool, low: float, high: float,
-    places: FloatArray,
+    V: int, chain: FloatArray, hints: FloatArray, other: FloatArray, skip: BoolArray, closed: bool, low: float,
+    high: float, places: FloatArray,
 ) -> None:  # fmt: skip
     """Write the places nearest to where each segment of another chain begins, half-way at most to the next hints.
 
     Args:
-        hints: (n,) increasing places. other: (n V, 4, 2).
+        hints: (n,) increasing places. other: (n V, 4, 2). skip: (n,) which places are not sought, and stay as they are.
         closed: whether the first follows the last a lap later. low, high: bounds of all places, unless ``closed``.
         places: (n,), which may be the hints.
     """
@@ -117,5 +117,6 @@ def near_places(
     before = last - m if closed else low
     for i in range(n):
         hint, after = hints[i], hints[i + 1] if i + 1 < n else first + m if closed else high
-        places[i] = near_place(V, chain, hint, (before + hint) / 2, (hint + after) / 2, other, i)
+        if not skip[i]:
+            places[i] = near_place(V, chain, hint, (before + hint) / 2, (hint + after) / 2, other, i)
         before = hint

@@ -58,7 +58,7 @@ class Landmarks:
     """
 
     def __init__(self, contour: Contour, em: float) -> None:
-        lasts = np.isin(np.arange(len(contour)), lasting(contour.cubics()))
+        lasts = np.isin(np.arange(len(contour)), lasting(contour.cubics()[None]))
         self.contour = Contour(contour.points[np.repeat(lasts, contour.degrees)], contour.degrees[lasts])
         self.cubics = cubics = self.contour.cubics()
         self.em = em

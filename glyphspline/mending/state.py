@@ -274,10 +274,8 @@ def _anchors(pair: _Pair, old: FloatArray, new: FloatArray) -> FloatArray:
     """(m + 1, 2) where new segments begin on the new contour, and near which place of the old one, at all locations."""
     m = new.shape[1]
     places = np.arange(float(m))
-    moved = (old[:, :, 0] != new[:, :, 0]).any(axis=(0, 2))
-    if moved.any():
-        near_places(pair.locations, pair.old, places, pair.new, True, 0.0, 0.0, places)
-    places = np.where(moved, places, np.arange(m))
+    same = (old[:, :, 0] == new[:, :, 0]).all(axis=(0, 2))
+    near_places(pair.locations, pair.old, places, pair.new, same, True, 0.0, 0.0, places)
     return np.column_stack([np.arange(m + 1.0), np.append(places, places[0] + m)])
 
 

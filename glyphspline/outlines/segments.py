@@ -44,16 +44,14 @@ def all_cubics(contours: ContourArrays) -> FloatArray:
 
 @compiled
 def lasting(cubics: FloatArray) -> IntArray:
-    """Indices of the cubics (m, 4, 2) whose points are not all the same."""
-    found, count = np.empty(len(cubics), dtype=np.int64), 0
-    for j in range(len(cubics)):
-        b = cubics[j]
-        for k in range(1, 4):
-            if b[k, 0] != b[0, 0] or b[k, 1] != b[0, 1]:
-                found[count] = j
-                count += 1
-                break
-    return found[:count]
+    """Indices of the cubics (K, m, 4, 2) whose points are not all the same in some of K masters."""
+    lasts = np.zeros(cubics.shape[1], dtype=np.bool_)
+    for v in range(len(cubics)):
+        for j in range(len(lasts)):
+            b = cubics[v, j]
+            for k in range(1, 4):
+                lasts[j] = lasts[j] or b[k, 0] != b[0, 0] or b[k, 1] != b[0, 1]
+    return np.flatnonzero(lasts)
 
 
 @compiled

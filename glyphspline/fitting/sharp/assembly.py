@@ -101,8 +101,8 @@ def find_anchors(
             anchors[at + c + s, 0], anchors[at + c + s, 1] = at - offsets[c] + s, own[s]
         if closed or k > 1:
             s = 0 if closed else 1  # an arc begins where the source's does
-            places = anchors[at + c + s : at + c + k, 1]
-            near_places(V, outline, own[s:k], results[V * (at + s) : V * (at + k)], closed > 0, own[0], end, places)
+            places, begins = anchors[at + c + s : at + c + k, 1], results[V * (at + s) : V * (at + k)]
+            near_places(V, outline, own[s:k], begins, np.zeros(k - s, dtype=np.bool_), closed > 0, own[0], end, places)
         anchors[at + c + k, 0] = at - offsets[c] + k
         anchors[at + c + k, 1] = anchors[at + c, 1] + m if closed else end
         if closed and anchors[at + c, 1] < 0.0:

@@ -49,13 +49,8 @@ def prepared(cubics: FloatArray, degrees: IntArray, settings: Settings) -> tuple
     point. Direction and that joint are those of the first master.
     """
     masters, m = len(cubics), len(degrees)
-    lasts = np.zeros(m, dtype=np.bool_)
-    for v in range(masters):
-        lasts[lasting(cubics[v])] = True
     found, kept, count = np.empty((masters, 2 * m, 4, 2)), np.empty(2 * m, dtype=np.int64), 0
-    for j in range(m):
-        if not lasts[j]:
-            continue
+    for j in lasting(cubics):
         closed = True
         for v in range(masters):
             own = cubics[v, j]

@@ -105,14 +105,12 @@ def fit_contours(
         places = anchors[count + c : count + c + r, 1]
         hints, outline = places.copy(), mixed(limits.corners, source)
         begins = mixed(limits.corners, found[:, count : count + r])
-        near_places(V, outline, hints, begins, True, 0.0, 0.0, places)
+        alike = np.ones(r, dtype=np.bool_)  # the outline may come by here twice
         for s in range(r):
-            alike = True
             for v in range(V):
                 here, p = outline[int(hints[s]) * V + v, 0], begins[s * V + v, 0]
-                alike = alike and here[0] == p[0] and here[1] == p[1]
-            if alike:  # the outline may come by here twice
-                places[s] = hints[s]
+                alike[s] = alike[s] and here[0] == p[0] and here[1] == p[1]
+        near_places(V, outline, hints, begins, alike, True, 0.0, 0.0, places)
         if places[0] < 0.0:
             places += m
         anchors[count + c + r, 0], anchors[count + c + r, 1] = r, places[0] + m

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.cubics import length
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints
@@ -62,23 +62,17 @@ class Run(NamedTuple):
 
 
 @compiled
-def arriving_curvature(p: FloatArray) -> float:
-    """The curvature at the end of a cubic (4, 2); not finite without a handle."""
-    ax, ay, bx, by = p[3, 0] - p[2, 0], p[3, 1] - p[2, 1], p[2, 0] - p[1, 0], p[2, 1] - p[1, 1]
-    return 2 / 3 * (bx * ay - by * ax) / length(ax, ay) ** 3
-
-
-@compiled
-def leaving_curvature(p: FloatArray) -> float:
-    """The curvature at the beginning of a cubic (4, 2)."""
-    ax, ay, bx, by = p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], p[2, 0] - p[1, 0], p[2, 1] - p[1, 1]
-    return 2 / 3 * (ax * by - ay * bx) / length(ax, ay) ** 3
+def end_curvature(p: FloatArray, end: int) -> float:
+    """The curvature at the beginning (``end`` 0) or the end (1) of a cubic (4, 2); not finite without a handle."""
+    sign, i, j, k = 1 - 2 * end, 3 * end, 1 + end, 2 - end
+    ax, ay, bx, by = p[j, 0] - p[i, 0], p[j, 1] - p[i, 1], p[k, 0] - p[j, 0], p[k, 1] - p[j, 1]
+    return sign * (2 / 3 * (ax * by - ay * bx) / length(ax, ay) ** 3)
 
 
 @compiled
 def end_jump(before: FloatArray, behind: FloatArray, em: float) -> float:
     """By which share of the larger one curvatures differ where two cubics (4, 2) meet; 0 where both are straight."""
-    a, b = arriving_curvature(before), leaving_curvature(behind)
+    a, b = end_curvature(before, 1), end_curvature(behind, 0)
     most = max(abs(a), abs(b))
     return abs(a - b) / most if FLAT < most * em < np.inf else 0.0
 
@@ -191,7 +185,7 @@ def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, number:
     if run.held[s] and run.held[q]:
         return
     before, behind = run.P[s], run.P[q]
-    one, other = arriving_curvature(before), leaving_curvature(behind)
+    one, other = end_curvature(before, 1), end_curvature(behind, 0)
     most = max(max(abs(one), abs(other)), 2 * FLAT / em)
     if not abs(one) + abs(other) < np.inf:
         return
@@ -270,7 +264,7 @@ def damp(run: Run, A: FloatArray, number: IntArray, tolerance: float) -> None:
                 A[at + side, at + side] += 0.02 / (0.2 * max(a, b, tolerance)) ** 2
 
 
-@compiled
+@inlined
 def sides(run: Run, k: int) -> tuple[int, int]:
     """The cubics after and before a node that move; -1 where there is none."""
     r = len(run.P)
@@ -278,7 +272,7 @@ def sides(run: Run, k: int) -> tuple[int, int]:
     return -1 if after < 0 or run.held[after] else after, -1 if before < 0 or run.held[before] else before
 
 
-@compiled
+@inlined
 def handles_at(run: Run, k: int) -> tuple[float, float]:
     """The lengths of the handles after and before a node; one at an end of the run counts for both."""
     r, P = len(run.P), run.P

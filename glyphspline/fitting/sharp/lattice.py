@@ -14,11 +14,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.cubics import hidden_extrema, length
 from ...types import FloatArray
 from .corners import Joints
-from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, arriving_curvature, end_jump, leaving_curvature, sides
+from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, end_curvature, end_jump, sides
 from .nearness import feet, reduced, sample_form, squares
 
 SWEEPS = 4
@@ -223,7 +223,7 @@ def candidates(
     return count
 
 
-@compiled
+@inlined
 def set_place(found: FloatArray, code: int, place: FloatArray) -> None:
     """Copy a node and its handles to those of a number."""
     for k in range(3):
@@ -330,17 +330,16 @@ def side_places(
     return count
 
 
-@compiled
+@inlined
 def beyond_end(run: Run, s: int, end: int) -> tuple[float, float, float, bool]:
     """What cubic s of a run meets at an end, see :func:`side_places`."""
     r = len(run.P)
     q = s + 1 if end else s - 1
     if not run.closed and (q < 0 or q == r):
         return 0.0, 0.0, np.inf, True
-    p = run.P[q % r]
-    if end:
-        return p[1, 0] - p[0, 0], p[1, 1] - p[0, 1], leaving_curvature(p), False
-    return p[2, 0] - p[3, 0], p[2, 1] - p[3, 1], -arriving_curvature(p), False
+    p, own = run.P[q % r], 1 - end
+    x, y = p[1 + own, 0] - p[3 * own, 0], p[1 + own, 1] - p[3 * own, 1]
+    return x, y, (1 - 2 * own) * end_curvature(p, own), False
 
 
 @compiled

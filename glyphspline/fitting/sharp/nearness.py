@@ -6,7 +6,7 @@ import numpy as np
 
 from ...compiled import compiled, inlined
 from ...curves.cubics import length
-from ...curves.nearest import near_place
+from ...curves.nearest import near_places
 from ...curves.pairing import pair_span, room_for
 from ...types import BoolArray, FloatArray
 from .cubics import project
@@ -192,10 +192,7 @@ def certified(
     r, m = len(chain) // V, len(other) // V
     work, marks, found = room_for(V)
     places, bounds = hints.copy(), np.zeros(r)
-    for s in range(r):
-        if not stays[s]:
-            low, here, high = hints[s - 1] if s > 0 else hints[r - 1] - m, hints[s], hints[s + 1]
-            places[s] = near_place(V, other, here, (low + here) / 2, (here + high) / 2, chain, s)
+    near_places(V, other, hints[:r], chain, stays, False, hints[r - 1] - m, hints[r], places)
     if closed:
         places[r] = places[0] + m
     if places[0] < 0.0:

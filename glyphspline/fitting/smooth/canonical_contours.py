@@ -49,10 +49,7 @@ def canonical_contours(given: FloatArray, begins: IntArray) -> CanonicalContours
     cubics, angles, lengths = np.empty((most * K, 4, 2)), np.zeros(most), np.empty(most * TABLE + count)
     offsets, flipped = np.zeros(count + 1, dtype=np.int64), np.empty(count, dtype=np.bool_)
     for k in range(count):
-        lasts = np.zeros(begins[k + 1] - begins[k], dtype=np.bool_)
-        for v in range(K):
-            lasts[lasting(given[v, begins[k] : begins[k + 1]])] = True
-        kept, at = np.flatnonzero(lasts), offsets[k]
+        kept, at = lasting(given[:, begins[k] : begins[k + 1]].copy()), offsets[k]
         m = len(kept)
         chain = np.empty((K, m, 4, 2))
         for v in range(K):

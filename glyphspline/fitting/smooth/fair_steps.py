@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled, inlined
-from ...curves.cubics import jet, nearest
+from ...curves.cubics import jet
 from ...curves.fairness import SHARE, TURN, swings
 from ...curves.nearest import near_place
 from ...types import BoolArray, FloatArray, IntArray
@@ -142,7 +142,7 @@ def _sampled(
     """Samples of the spans that move, before any move; arguments as of :func:`move_controls`."""
     M, basis, s, count = len(moves.spans), np.empty((3, 4)), 0, 0
     jets, by = np.empty((M * SAMPLES, 4)), np.empty((M * SAMPLES, 4, 4))
-    rows, of = np.empty((M * POINTS, 7)), np.empty(M * POINTS, dtype=np.int64)
+    rows, of, point = np.empty((M * POINTS, 7)), np.empty(M * POINTS, dtype=np.int64), np.empty((1, 1, 2))
     for m in range(M):
         at = moves.spans[m]
         for k in range(SAMPLES if moves.moving[at] else 1):
@@ -163,7 +163,8 @@ def _sampled(
                 continue
             place = (1 - x) * ends[at] + x * ends[at + 1]
             if k > 0:
-                place = _place(outline, place, ends[at], ends[at + 1], px, py)
+                point[0, 0, 0], point[0, 0, 1] = px, py
+                place = near_place(1, outline, place, ends[at], ends[at + 1], point, 0)
             nx, ny, distance = _off_outline(outline, place, px, py, dx, dy, 0.02 * near)
             row, of[count], count = rows[count], m, count + 1
             row[0], row[1] = distance, max(limits[at], 1.02 * abs(distance) + 1e-9 * near)
@@ -174,19 +175,7 @@ def _sampled(
     return Sampled(jets[:s], by[:s], kappa, bend, rows[:count], of[:count])
 
 
-@compiled
-def _place(outline: FloatArray, guess: float, low: float, high: float, px: float, py: float) -> float:
-    """Where on the outline, between two places, it is nearest to a point, from a guess on."""
-    on = int(np.floor(guess))
-    z = nearest(outline[on % len(outline)], 0.0, 1.0, guess - on, px, py)
-    if z not in (0.0, 1.0):
-        return on + z
-    point = np.empty((1, 1, 2))  # the place may lie in another segment
-    point[0, 0, 0], point[0, 0, 1] = px, py
-    return near_place(1, outline, on + z, low, high, point, 0)
-
-
-@compiled
+@inlined
 def _off_outline(
     outline: FloatArray, place: float, px: float, py: float, dx: float, dy: float, apart: float
 ) -> tuple[float, float, float]:

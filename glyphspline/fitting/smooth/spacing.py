@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.cubics import jet, length, length_table
 from ...types import BoolArray, FloatArray, IntArray
 from ..closed_curves import chords_of
@@ -171,7 +171,7 @@ def failed(corners: IntArray, errors: FloatArray, near: float) -> BoolArray:
     return fails
 
 
-@compiled
+@inlined
 def spans_after(corners: IntArray, k: int, n: int) -> int:
     """The number of spans of stretch k; one corner alone has all n."""
     return (corners[(k + 1) % len(corners)] - corners[k] - 1) % n + 1

@@ -14,7 +14,7 @@ import numpy as np
 from ...arrays import ascending, grown
 from ...compiled import compiled
 from ...curves.cubics import extent
-from ...curves.nearest import near_place
+from ...curves.nearest import near_places
 from ...curves.pairing import ROUNDING, pair_span, room_for
 from ...interpolation.kernels.driver import distance
 from ...outlines.contour_arrays import offsets_of
@@ -152,15 +152,11 @@ def measured(
         a, b = offsets[i], offsets[i + 1]
         outline, spans = chain_of(contours, which[i]), pieces[a:b].reshape((-1, 4, 2))
         begins, rounding = ends[a + i : b + i + 1], ROUNDING * max(extent(spans), extent(outline))
-        lap = len(outline) / V
         for j in range(b - a):
             if same[a + j]:
                 begins[j] = known.ends[a + i + j]
-                continue
-            before, here = places[a + j - 1] if j > 0 else places[b - 1] - lap, places[a + j]
-            after = places[a + j + 1] if a + j + 1 < b else places[a] + lap
-            begins[j] = near_place(V, outline, here, (before + here) / 2, (here + after) / 2, spans, j)
-        begins[b - a] = begins[0] + lap
+        near_places(V, outline, places[a:b], spans, same[a:b], True, 0.0, 0.0, begins)
+        begins[b - a] = begins[0] + len(outline) // V
         for j in range(b - a):
             if same[a + j]:
                 bounds[a + j], gaps[a + j], worst[a + j] = known.bounds[a + j], known.gaps[a + j], known.worst[a + j]
