@@ -44,7 +44,7 @@ def all_cubics(contours: ContourArrays) -> FloatArray:
 
 @compiled
 def lasting(cubics: FloatArray) -> IntArray:
-    """Indices of the cubics (K, m, 4, 2) whose points are not all the same in some of K masters."""
+    """Indices of the cubics (K, m, 4, 2) that are not a single point in all of K masters."""
     lasts = np.zeros(cubics.shape[1], dtype=np.bool_)
     for v in range(len(cubics)):
         for j in range(len(lasts)):
