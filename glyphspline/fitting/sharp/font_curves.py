@@ -340,49 +340,74 @@ def let_meet(
     Nearby places on the grid are tried first, then the cubics beside the node are moved together, and those beside
     these too. Fewer curvatures jump in the run then, and none by more than a try of it allows.
     """
-    r, m, em = P.shape[1], cubics.shape[1], limits.em
-    share, room = np.ones(len(start) + 1), np.empty((2, 2025, 8))
-    stays, kinds = np.zeros(r, np.bool_), np.full(r, 3)
+    r, m = P.shape[1], cubics.shape[1]
+    stays, ones, room = np.zeros(r, np.bool_), np.ones(len(start) + 1), np.empty((2, 2025, 8))
     for s in range(r):
         k = (i + places[s]) % m
-        stays[s] = start[k] >= 4 or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
+        # Where a check found something even in a try that left curvatures alone, it would find it again.
+        stays[s] = EASE[start[k]] == 0.0 or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
     for node in range(2 * r):  # once more by nearby places: one that does not meet may do so when others have
-        a, q = (node - 1) % r, node % r
-        if q == 0 and not closed:
+        q = node % r
+        if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q]:
             continue
-        if stays[a] or stays[q] or a == q or joint_turn(P[0, a : a + 1], P[0, q : q + 1]) > SMOOTH_KINK:
+        if joint_turn(P[0, q - 1 : q] if q > 0 else P[0, r - 1 :], P[0, q : q + 1]) > SMOOTH_KINK:
             continue
         for wide in range(WIDEST + 1 if node < r else 1):
-            if end_jump(P[0, a], P[0, q], em) <= 0.1:
+            if end_jump(P[0, q - 1], P[0, q], limits.em) <= 0.1:
                 break
-            settled, ease = np.ones(r, np.bool_), np.ones(r + 1)
-            for side in range(2):
-                for away in range(max(wide, 1)):
-                    s = q + away if side else q - 1 - away
-                    if (not closed and not 0 <= s < r) or stays[s % r]:
-                        break
-                    settled[s % r] = False
-            for s in range(0 if closed else 1, r):
-                if s != q and end_jump(P[0, s - 1], P[0, s], em) > 0.1:
-                    ease[s] = OTHERS
-            ease[r] = ease[0]
-            run = as_run(cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], share, share, settled)
-            run.ease[:] = ease
-            if wide > 0:
-                harmonise(run, joints, i, limits.tolerance, em)
-                round_run(run, joints, i, limits.tolerance, em)
-            if end_jump(run.P[a], run.P[q], em) > 0.1:
-                meet(run, q, joints, i, limits.tolerance, em, room)
-            new, bad = run.P.copy().reshape((1, r, 4, 2)), np.zeros(r, np.bool_)
-            if jumps_of(new, kinds, closed, em) < jumps_of(P, kinds, closed, em):
-                if wide > 0:
-                    mark_joints(run, cubics[0], i, em, bad)
-                for s in range(r):
-                    bad[s] = bad[s] or (crosses_handles(run.P[s]) and not crosses_handles(P[0, s]))
-                mark_turns(new, run, cubics, joints, i, limits.mixes, bad)
-                bad |= misses(new, run, cubics, i, limits, 0.999)
-                if not (bad & ~settled).any():
-                    P[0] = run.P
+            settled = away_from(q, max(wide, 1), stays, closed)
+            run = as_run(
+                cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], ones, ones, settled
+            )  # fmt: skip
+            if meets(run, q, wide, P, settled, cubics, joints, i, limits, room):
+                P[0] = run.P
+
+
+@compiled
+def away_from(q: int, wide: int, stays: BoolArray, closed: bool) -> BoolArray:
+    """(r,) the cubics of a run that do not move for node q: those more than so many away, or beyond one that stays."""
+    r = len(stays)
+    settled = np.ones(r, np.bool_)
+    for side in range(2):
+        for away in range(wide):
+            s = q + away if side else q - 1 - away
+            if (not closed and not 0 <= s < r) or stays[s % r]:
+                break
+            settled[s % r] = False
+    return settled
+
+
+@compiled
+def meets(
+    run: Run, q: int, wide: int, P: FloatArray, settled: BoolArray, cubics: FloatArray, joints: Joints, i: int,
+    limits: Limits, room: FloatArray,
+) -> bool:  # fmt: skip
+    """Move the cubics of a run so that curvatures meet at node q; whether it is better then than P (1, r, 4, 2).
+
+    Args:
+        wide: how many cubics on either side are moved together; 0 takes nearby places alone. settled: (r,) those that
+            do not move. room: of :func:`.lattice.meet`.
+    """
+    r, em, kinds = len(run.P), limits.em, np.full(len(run.P), 3)
+    if wide > 0:
+        for s in range(0 if run.closed else 1, r):
+            if s != q and end_jump(P[0, s - 1], P[0, s], em) > 0.1:
+                run.ease[s] = OTHERS
+        run.ease[r] = run.ease[0]
+        harmonise(run, joints, i, limits.tolerance, em)
+        round_run(run, joints, i, limits.tolerance, em)
+    if end_jump(run.P[q - 1], run.P[q], em) > 0.1:
+        meet(run, q, joints, i, limits.tolerance, em, room)
+    new, bad = run.P.copy().reshape((1, r, 4, 2)), np.zeros(r, np.bool_)
+    if jumps_of(new, kinds, run.closed, em) >= jumps_of(P, kinds, run.closed, em):
+        return False
+    if wide > 0:
+        mark_joints(run, cubics[0], i, em, bad)
+    for s in range(r):
+        bad[s] = bad[s] or (crosses_handles(run.P[s]) and not crosses_handles(P[0, s]))
+    mark_turns(new, run, cubics, joints, i, limits.mixes, bad)
+    bad |= misses(new, run, cubics, i, limits, 0.999)
+    return not (bad & ~settled).any()
 
 
 @compiled
