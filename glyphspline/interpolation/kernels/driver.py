@@ -15,6 +15,7 @@ import numpy as np
 
 from ...arrays import grown
 from ...compiled import compiled, inlined
+from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray, IntArray
 from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
@@ -50,16 +51,17 @@ def run(
             in a fraction of the time.
         memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
     """
-    given, found = Given(*of_given), Found(*of_found)
+    given, found = borrowed(Given(*of_given)), borrowed(Found(*of_found))
     d, closed = given.points.shape[1], given.closed
     size = (d + 1) // 2 * PAIR
     count = memory.shape[0] // (BLOCK + 3 * size)
-    group = Group(
+    owned = Group(
         size, memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
         np.empty((SLOTS, TABLE), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
     )  # fmt: skip
     first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
-    at = Coordinates(memory[first:second], memory[second:third], memory[third : third + count * size])
+    at = borrowed(Coordinates(memory[first:second], memory[second:third], memory[third : third + count * size]))
+    group = borrowed(owned)
     history, residuals, used = np.empty(64), np.empty(64), 0
     slots, lane, interval = 0, 0, 0
     for k in range(k0, k1):
@@ -84,6 +86,7 @@ def run(
         slots, lane, interval = slots + 1, lane + n + 2 * HALO, interval + n + 2 * PAD
     if slots > 0:
         history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
+    keep_alive(owned)
     return residuals[:used]
 
 
