@@ -290,13 +290,13 @@ def kinks(
 
 def kinks_along(
     glyphs: Iterable[Masters], axes: tuple[DesignAxis, ...], location: Mapping[str, float], chosen: Sequence[int],
-    corner_angle: float, at_once: int = 64,
+    corner_angle: float,
 ) -> list[AxisKinks]:  # fmt: skip
     """The smooth joints of glyphs along the ``chosen`` of a font's axes, by their numbers.
 
     Args:
         glyphs: in all their masters. axes: of a font without glyphs; otherwise those of its glyphs count.
-        location: user-space values of the other axes. at_once: number of glyphs that are measured in one pass.
+        location: user-space values of the other axes.
     """
     none = np.zeros(0)
     parts = [
@@ -304,7 +304,7 @@ def kinks_along(
         for k in chosen
     ]
     each = iter(glyphs)
-    while batch := list(islice(each, at_once)):
+    while batch := list(islice(each, 64)):  # glyphs that are measured in one pass
         base = batch[0].normalised(location)
         joints = [_smooth_joints(masters, corner_angle) for masters in batch]
         for k, part in zip(chosen, parts, strict=True):
