@@ -63,6 +63,12 @@ class Changes(NamedTuple):
         found: BoolArray = np.logical_or.reduce(changed.reshape(-1, changed.shape[-1]))
         return found
 
+    def or_worse(self, other: Changes) -> Changes:
+        """Of each contour what changed the more, here or in other results for the same sources."""
+        uncounted = (self.new_crossings < 0) | (other.new_crossings < 0)
+        most = np.where(uncounted, -1, np.maximum(self.new_crossings, other.new_crossings))
+        return Changes(most, self.collapsed | other.collapsed)
+
     def copy(self) -> Changes:
         """The same in arrays of their own."""
         return Changes(self.new_crossings.copy(), self.collapsed.copy())

@@ -157,7 +157,7 @@ def drawings() -> None:
 
 def quadratics() -> None:
     """What a TTF stores."""
-    from ..fitting.sharp.font_fit import quadratic_points
+    from ..fitting.sharp.font_points import quadratic_points
 
     options = Options(corners="sharp", continuity="g2")
     quadratic_points(Outline("round", contours=(ROUND,)).arrays, options, 1.0, 1000.0)

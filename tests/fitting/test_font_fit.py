@@ -15,7 +15,8 @@ import glyphspline as gs
 from glyphspline.cli.groups import for_fonts
 from glyphspline.curves.cubics import hidden_extrema, turns
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.fitting.sharp.font_fit import ONE, of_points, quadratic_points, stored_points
+from glyphspline.fitting.sharp.font_fit import ONE
+from glyphspline.fitting.sharp.font_points import of_points, quadratic_points, rounded_nodes, stored_points
 from glyphspline.fitting.sharp.harmony import FIXED, Run, end_jump
 from glyphspline.fitting.sharp.run_gates import Limits, misses
 from glyphspline.outlines.contour_arrays import ContourArrays
@@ -147,6 +148,27 @@ def test_sources_off_the_grid_get_no_kink_and_keep_their_digits(tmp_path: Path) 
     assert kept > 100
 
 
+def test_a_sliver_does_not_cross_itself_as_fonts_store_it() -> None:
+    """A curve within a unit of a line whose ends have decimals: they stay, and handles in whole units cross the line;
+    with ends in whole units too they do not."""
+    points = [[382.5, 281.8], [386.4, 299.6], [385.5, 294.2], [384.2, 288.3]]
+    source = gs.Contour(np.array(points), np.array([1, 3]))
+    (found,) = gs.convert(gs.Outline("d", contours=(source,)), OPTIONS).contours
+    made = gs.Outline("d", contours=(found.curve,))
+    assert not [each for each in gs.check(made) if each.kind == "crossing"]
+    assert found.measures.new_crossings == 0
+
+
+def test_decimals_do_not_keep_a_whole_contour_as_it_is() -> None:
+    """A curve that begins at a corner with decimals is too far once that is rounded: it alone is fitted again."""
+    (outline,) = outlines(FONTS / "kouzan-gyosho.otf", "永")
+    contour = outline.contours[0]
+    source = gs.Contour(np.round(0.61 * contour.points, 1), contour.degrees)
+    (found,) = gs.convert(replace(outline, contours=(source,)), OPTIONS).contours
+    assert found.measures.within_tolerance
+    assert len(found.curve) < 0.8 * len(source)
+
+
 def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArrays, int, int]]:
     """Contours of a glyph and what is stored for them, with the numbers of their points."""
     em = outline.metrics.units_per_em
@@ -263,6 +285,28 @@ def test_a_line_ends_earlier_where_the_grid_has_no_control_point_along_it_near_i
     assert far <= 1.0
     a, b = (gs.sample(each, step=0.5) for each in (source, gs.Contour(made.points, made.degrees)))
     assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
+def test_a_line_end_has_no_new_kink_beside_a_kink_of_the_source_that_is_gone() -> None:
+    """The same line, and a joint of 0.95 degrees on the other side, which quadratics smooth."""
+    points = [
+        [266, 104], [121, 104], [117, 104], [113.32, 110.03], [116, 113], [268, 282], [368, 270], [380, 240],
+        [380, 200], [381, 140], [340, 104],
+    ]  # fmt: skip
+    source = gs.Contour(np.array(points, dtype=np.float64), np.array([1, 3, 1, 3, 3]))
+    assert [place for *place, _ in kinks(source)] == [[380.0, 200.0]]
+    (found,), far = quadratic_points(gs.Outline("four", contours=(source,)).arrays, OPTIONS, 1.0, 1000.0)
+    made = of_points(*found)
+    assert kinks(gs.Contour(made.points, made.degrees)) == []
+    assert far <= 1.0
+
+
+def test_rounding_turns_short_lines_little() -> None:
+    """Rounded to the nearest units, a line of 7 turns by 4 degrees."""
+    points = [[388.3, 420], [391.7, 414], [465, 468], [500, 542], [478, 613], [370, 540], [372, 458]]
+    source = gs.Contour(np.array(points, dtype=np.float64), np.array([1, 3, 3]))
+    nodes = rounded_nodes(source.cubics()[None], source.degrees)
+    np.testing.assert_array_equal(nodes[0], [[388, 420], [391, 414], [478, 613]])
 
 
 def test_no_control_point_is_on_a_point_of_the_curve_where_its_leg_would_turn_unseen() -> None:

@@ -12,11 +12,9 @@ import numpy as np
 from ...checks.kinds import JUMP, KINK, THRESHOLDS
 from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
 from ...compiled import compiled
-from ...curves.cubics import turns
 from ...curves.nearest import near_places
 from ...curves.pairing import SHARPNESS, pair_instances
 from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
-from ...outlines.masters import quadratics
 from ...outlines.segments import all_cubics, farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
 from ..faithful import Fits
@@ -24,10 +22,8 @@ from ..ladders import SHARP_TRIES
 from ..measures import distance_columns
 from ..options import Options
 from ..results import ConvertedContours, not_fitted
-from .corners import NO_HANDLE, find_joints
+from .corners import find_joints
 from .font_curves import KEPT, cut_at, fit_contour
-from .font_quadratics import Stored
-from .font_quadratics import fit_contour as fit_quadratics
 from .run_gates import CORNER, Limits, mixed
 from .run_gates import KINK as KINKED
 from .settings import EFFORTS, LONG_LINE, Settings
@@ -126,16 +122,21 @@ class FontCurve(NamedTuple):
     Attributes:
         curves: in each master. fitted: the same on the grid. inner: (r,) whether a segment begins inside a run.
         anchors: (r + 1, 2) places on it and on its source that belong together.
-        bound: certified distance from the source, of masters in the whole design space. gap: the largest one seen; of
-            masters it is not looked for.
+        bounds: (r,) certified distances from the source, of masters in the whole design space. gap: the largest one
+            seen; of masters it is not looked for.
     """
 
     curves: tuple[ContourArrays, ...]
     fitted: Fitted
     inner: BoolArray
     anchors: FloatArray
-    bound: float
+    bounds: FloatArray
     gap: float
+
+    @property
+    def bound(self) -> float:
+        """The largest of the bounds."""
+        return float(self.bounds.max())
 
 
 ONE = np.ones((1, 1))
@@ -172,19 +173,20 @@ def fit_for_fonts(
     expected = []
     for master in sources:
         # Beside points that are rounded, a segment that is kept may be found wrong as if it were rounded too.
-        written = _findings(master.rounded(options.precision), em)
-        expected.append(np.concatenate([_findings(master, em), written[written[:, WHAT] != KINK]]))
+        written = findings(master.rounded(options.precision), em)
+        expected.append(np.concatenate([findings(master, em), written[written[:, WHAT] != KINK]]))
     for level in GATES:
         wrong, places = np.zeros(len(tries), dtype=np.bool_), [each.anchors for each in found]
         for v, (master, known) in enumerate(zip(sources, expected, strict=True)):
             wrong |= _new_findings(master, known, joined([each.curves[v] for each in found]), places, em)
-        outside = [c for c, each in enumerate(found) if not each.bound <= tolerance]
-        for c in outside:
-            wrong[source.offsets[c] : source.offsets[c + 1]] = True
+        for c, each in enumerate(found):
+            # Where the source has decimals, fits that were near enough may not be once their ends are rounded too.
+            for s in np.flatnonzero(~(each.bounds <= tolerance)).tolist():
+                wrong[source.offsets[c] + _stretch(each.anchors[s, 1], each.anchors[s + 1, 1], source, c)] = True
         which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1).tolist()
         before = tries.copy()
         tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT)
-        for c in which if level > KEPT else outside:
+        for c in which if level > KEPT else ():
             tries[source.offsets[c] : source.offsets[c + 1]] = KEPT
         if (tries == before).all():
             break
@@ -241,7 +243,7 @@ def _fitted(
             tuple(curve.part(c, c + 1) for curve in curves),
             Fitted(fitted.cubics[:, a:b], fitted.nodes[a:b], np.array([0, b - a])), inner[a:b],
             anchors[a + c : b + c + 1],
-            float(bounds[a:b].max()), float(gaps[a:b].max()),
+            bounds[a:b], float(gaps[a:b].max()),
         )
         for c, (a, b) in enumerate(pairwise(offsets.tolist()))
     ]  # fmt: skip
@@ -258,7 +260,7 @@ def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
     return np.stack([laps[k, 0], laps[k + 1, 0], laps[k, 1], laps[k + 1, 1]], axis=1)
 
 
-def _findings(contours: ContourArrays, em: float) -> FloatArray:
+def findings(contours: ContourArrays, em: float) -> FloatArray:
     """(n, 7) what a check finds at joints and in segments, see :data:`...checks.segments.WHAT`; and as kinks joints of
     curves that turn less, which a check takes for rounding's."""
     segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
@@ -276,7 +278,7 @@ def _new_findings(
 ) -> BoolArray:
     """(m,) the source's segments where curves have a finding of a kind that these segments have not."""
     wrong = np.zeros(len(source.degrees), dtype=np.bool_)
-    for row in _findings(curves, em):
+    for row in findings(curves, em):
         c, s = int(row[CONTOUR]), int(row[PLACE])
         own, m = places[c][:, 1], int(np.diff(source.offsets)[c])
         low, high = own[s] - (own[-1] - own[-2] if s == 0 else own[s] - own[s - 1]) * (row[WHAT] == KINK), own[s + 1]
@@ -284,12 +286,13 @@ def _new_findings(
         first, last = (own[s], own[s]) if row[WHAT] == KINK else (low, high)
         if ((alike - first + 0.5) % m <= last - first + 1.0).any():
             continue
-        wrong[source.offsets[c] + np.arange(int(np.floor(low + 1e-6)), int(np.ceil(high - 1e-6))) % m] = True
+        wrong[source.offsets[c] + _stretch(low, high, source, c)] = True
     return wrong
 
 
-DENSER = 4.0
-"""How much finer a source of cubics is sampled: what follows it has more quadratics, each with samples inside."""
+def _stretch(low: float, high: float, source: ContourArrays, c: int) -> IntArray:
+    """The segments of a contour from one place to another."""
+    return np.arange(int(np.floor(low + 1e-6)), int(np.ceil(high - 1e-6))) % int(np.diff(source.offsets)[c])
 
 
 def chains(cubics: FloatArray, degrees: IntArray, offsets: IntArray) -> ContourArrays:
@@ -297,203 +300,3 @@ def chains(cubics: FloatArray, degrees: IntArray, offsets: IntArray) -> ContourA
     needed = np.ones((len(cubics), 3), dtype=np.bool_)
     needed[degrees == 1, 1:] = False
     return ContourArrays(cubics[:, :3][needed], degrees, offsets, offsets_of(degrees)[offsets])
-
-
-def quadratic_points(
-    source: ContourArrays, options: Options, tolerance: float, em: float
-) -> tuple[list[tuple[FloatArray, BoolArray]], float]:
-    """Points of contours as TrueType stores them, and whether each is on the curve.
-
-    Returns:
-        These, and a bound of their distance from the source.
-    """
-    found, reached = [], 0.0
-    for c in range(source.num_contours):
-        own = source.part(c, c + 1)
-        points, on, far = quadratic_contour([own], stored_points(own), ONE, ONE, options, tolerance, em)
-        found.append((points[0], on))
-        reached = max(reached, far)
-    return found, reached
-
-
-def quadratic_contour(
-    sources: Sequence[ContourArrays], stored: tuple[FloatArray, BoolArray] | None, corners: FloatArray,
-    mixes: FloatArray, options: Options, tolerance: float, em: float, stays: BoolArray | None = None,
-) -> tuple[FloatArray, BoolArray, float]:  # fmt: skip
-    """Points (K, n, 2) of one contour in K masters as TrueType stores them, and whether each is on the curve.
-
-    Args:
-        stored: points (K, n, 2) as they are, and which are on the curve, where the source is these but for rounding.
-        corners, mixes: see :func:`fit_for_fonts`. stays: (m,) segments that are to stay as they are.
-
-    Returns:
-        Also a bound of their distance from the source.
-    """
-
-    def fit(cubics: FloatArray, degrees: IntArray) -> tuple[FloatArray, BoolArray, float]:
-        settings = EFFORTS[options.effort](
-            near=tolerance if stored else tolerance / DENSER, angle=float(np.radians(options.corner_angle)),
-            line=LONG_LINE * em, c2=False, margin=0.0, residual=0.0,
-        )  # fmt: skip
-        return fit_quadratics(cubics, degrees, settings, tolerance, as_stored(cubics, stored, stays), corners, mixes)
-
-    cubics, degrees = np.stack([all_cubics(master) for master in sources]), sources[0].degrees
-    points, on, far = fit(cubics, degrees)
-    if stored is None:
-        if len(sources) > 1:
-            return points, on, far
-        own = sources[0]
-        first, turned = of_points(points[0], on), _turns_in(own)
-        for least in SLIDES if _turns_in(first) > turned else ():
-            cut = with_cut_lines(own, first, least)
-            if cut is None or _turns_in(of_points(points[0], on)) <= turned:
-                break
-            other = fit(all_cubics(cut)[None], cut.degrees)
-            if other[2] <= tolerance and _turns_in(of_points(other[0][0], other[1])) < _turns_in(
-                of_points(points[0], on)
-            ):
-                points, on, far = other
-        return points, on, far
-    if 0 < len(on) < len(stored[1]) and (
-        len(sources) > 1 or not _more_findings(sources[0], of_points(points[0], on), em)
-    ):
-        return (*begun_as(points, on, stored), far)
-    return (*stored, as_stored(cubics, stored).drift)
-
-
-def as_stored(
-    cubics: FloatArray, stored: tuple[FloatArray, BoolArray] | None, stays: BoolArray | None = None
-) -> Stored:
-    """What is stored of a contour (K, m, 4, 2) by its segments."""
-    K, m = cubics.shape[:2]
-    if stored is None:
-        nothing = np.empty((K, m, 2))
-        return Stored(False, np.rint(cubics[:, :, 0]), nothing, np.zeros(m, np.bool_), 0.0, np.zeros(m, np.bool_))
-    points, degrees, implied = quadratics(*stored)
-    starts = np.cumsum(degrees) - degrees
-    node, control = points[:, starts], points[:, np.minimum(starts + 1, points.shape[1] - 1)]
-    exact = np.where((degrees == 2)[:, None], (3 * cubics[:, :, 1] - cubics[:, :, 0]) / 2, control)
-    drift = max(np.abs(each).max() for each in (node - cubics[:, :, 0], control - exact))
-    node, control = (np.ascontiguousarray(each) for each in (node, control))
-    stays = np.zeros(m, np.bool_) if stays is None else stays
-    return Stored(True, node, control, implied, float(np.sqrt(2) * drift), stays)
-
-
-SLIDES = (1, 3, 6, 10, 15, 21)
-"""From how many units from the end of a line on it is tried to let a curve begin there."""
-
-ALONG, BESIDE, REACH = np.radians(0.3), 0.4, 40
-"""Angle from a line at which the grid has a control point along it; how far from the line, in units, a new end of it
-may be; and how far from the old one, in units."""
-
-
-def _turns_in(contour: ContourArrays) -> int:
-    """The number of joints with curves that turn as a kink does."""
-    sizes = np.abs(turns(all_cubics(contour), NO_HANDLE))
-    line = contour.degrees == 1
-    return int(((sizes > KINKED) & (sizes < CORNER) & ~(line & np.roll(line, 1))).sum())
-
-
-def with_cut_lines(source: ContourArrays, made: ContourArrays, least: int) -> ContourArrays | None:
-    """A contour whose lines end earlier where those of what was made of it, in whole units, are left with a new kink.
-
-    The rest of a line belongs to the curve then, which has its first control point further away: near the end of a line
-    the grid may have none in its direction.
-
-    Args:
-        least: units from the old end. None if there is no such line.
-    """
-    cubics, sizes, made_sizes = all_cubics(source), turns(all_cubics(source), NO_HANDLE), {}
-    begins = all_cubics(made)[:, 0].tolist()
-    for point, size in zip(begins, np.abs(turns(all_cubics(made), NO_HANDLE)).tolist(), strict=True):
-        made_sizes[tuple(point)] = size
-    rows, degrees, m, changed = [], [], len(cubics), False
-    for s in range(m):
-        own, pieces = cubics[s], [(cubics[s], int(source.degrees[s]))]
-        for end in range(2) if source.degrees[s] == 1 else ():
-            j, beside = (s + end) % m, (s + 1) % m if end else s - 1
-            size = made_sizes.get(tuple(np.rint(cubics[j, 0]).tolist()), 0.0)
-            if source.degrees[beside] == 1 or not max(abs(sizes[j]) + 1e-3, KINKED) < size < CORNER:
-                continue
-            share = _share_of_line(np.rint(own[3 * (1 - end)]), own[3 * end], least)
-            if share is None:
-                continue
-            changed, at = True, share * own[3 * (1 - end)] + (1 - share) * own[3 * end]
-            line, _ = pieces.pop(-1 if end else 0)
-            first, last = straight(line[0], at), straight(at, line[3])
-            if end:
-                pieces += [(first, 1), (last, 3)]
-            else:
-                pieces = [(first, 3), (last, 1), *pieces]
-        rows += [cubic for cubic, _ in pieces]
-        degrees += [degree for _, degree in pieces]
-    if not changed:
-        return None
-    return chains(np.array(rows), np.array(degrees), np.array([0, len(rows)]))
-
-
-def straight(a: FloatArray, b: FloatArray) -> FloatArray:
-    """A line as a cubic (4, 2)."""
-    return a + np.arange(4.0)[:, None] / 3 * (b - a)
-
-
-def _share_of_line(far: FloatArray, end: FloatArray, least: int) -> float | None:
-    """By which share a line is to be shorter, so that the grid has a control point beyond its end, along it."""
-    vector = far - end
-    size = float(np.hypot(*vector))
-    for step in range(least, min(REACH, int(size / 2)) + 1):
-        node = np.rint(end + step / size * vector)
-        away = node - end
-        if abs(vector[0] * away[1] - vector[1] * away[0]) > BESIDE * size:
-            continue
-        x, y = np.meshgrid(*(node[k] - end[k] + np.arange(-12.0, 13.0) for k in range(2)))
-        x, y = -x, -y
-        u, v = node - far
-        along, across = (u * x + v * y) / size, np.abs(u * y - v * x) / size
-        if ((along > step) & (along < step + 12.0) & (across < ALONG * along)).any():
-            return float(away @ vector) / size**2
-    return None
-
-
-def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None:
-    """The points (1, n, 2) of one contour as TrueType stores them, without those midway between control points.
-
-    None if one is off the grid, or a segment is a cubic.
-    """
-    if (contour.degrees > 2).any():
-        return None
-    points, first = contour.points, offsets_of(contour.degrees)
-    on = np.zeros(len(points), dtype=np.bool_)
-    on[first[:-1]] = True
-    curved = (contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)
-    middle = (np.roll(points, 1, axis=0) + np.roll(points, -1, axis=0)) / 2
-    implied = np.zeros(len(points), dtype=np.bool_)
-    implied[first[:-1][curved]] = True
-    implied &= (np.abs(middle - points) < 1e-6).all(axis=1)
-    points, on = points[~implied], on[~implied]
-    if np.abs(points - np.rint(points)).max() > 1e-6:
-        return None
-    return np.rint(points)[None], on
-
-
-def of_points(points: FloatArray, on: BoolArray) -> ContourArrays:
-    """A contour from points (n, 2) as TrueType stores them."""
-    whole, degrees, _ = quadratics(points[None], on)
-    return ContourArrays(whole[0], degrees, np.array([0, len(degrees)]), np.array([0, whole.shape[1]]))
-
-
-def begun_as(points: FloatArray, on: BoolArray, stored: tuple[FloatArray, BoolArray]) -> tuple[FloatArray, BoolArray]:
-    """Points from the first one on the curve that others, which are stored, have too."""
-    here = {tuple(point): k for k, point in reversed(list(enumerate(points[0].tolist()))) if on[k]}
-    first = next(
-        (here[tuple(p)] for p, own in zip(stored[0][0].tolist(), stored[1], strict=True) if own and tuple(p) in here), 0
-    )
-    return np.roll(points, -first, axis=1), np.roll(on, -first)
-
-
-def _more_findings(source: ContourArrays, made: ContourArrays, em: float) -> bool:
-    """Whether a check finds more of a kind in what was made of a contour."""
-    before, after = (
-        np.bincount(_findings(each, em)[:, WHAT].astype(np.int64), minlength=20) for each in (source, made)
-    )
-    return bool((after > before).any())

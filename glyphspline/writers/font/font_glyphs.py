@@ -210,7 +210,7 @@ def in_quadratics(
     Contours of lines and quadratics keep what need not change. Where whole units do not have others near enough, each
     cubic becomes some by itself.
     """
-    from ...fitting.sharp.font_fit import quadratic_points  # compiles more than others need
+    from ...fitting.sharp.font_points import quadratic_points  # compiles more than others need
 
     arrays = Outline(name, contours=[each for each in contours if len(each)]).arrays
     check_size(arrays.points.tolist(), name)

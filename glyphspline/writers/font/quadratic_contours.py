@@ -101,7 +101,7 @@ def in_quadratics(
         owns: the contours as the font has them, by their numbers in the masters. shift: (K,) from where a master is
             drawn to where it is stored, along x.
     """
-    from ...fitting.sharp.font_fit import quadratic_contour  # compiles more than others need
+    from ...fitting.sharp.font_points import quadratic_contour  # compiles more than others need
 
     masters, offset = new.masters, shift[:, None, None] * np.array([1.0, 0.0])
     corners = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)
