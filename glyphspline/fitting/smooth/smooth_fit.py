@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -192,25 +193,39 @@ class _Search:
                 break
 
     def thin(self) -> None:
-        """Remove vertices of the contours that passed, as long as they still pass."""
-        which = np.array([k for k, found in sorted(self.kept.items()) if self.passes(found)], dtype=np.int64)
-        trials = THINNINGS[self.options.effort]
-        if len(which) == 0 or trials == 0:
-            return
-        parts = [found.part(found.trial.places, i) for found, i in map(self.kept.__getitem__, which.tolist())]
-        trial = self.attempt(which, np.concatenate(parts), offsets_of([len(part) for part in parts])).trial
-        keep = np.ones(len(trial.places), dtype=np.bool_)
-        good = steps.Good(
-            which, trial.offsets, np.diff(trial.offsets), trial.places.copy(), trial.points.copy(), trial.gaps.copy(),
-            keep, ~keep,
-        )  # fmt: skip
-        for _ in range(trials):
-            which, places, offsets = steps.thinned(
-                self.contours, self.near, self.hold, self.angle, self.options.max_ratio, trial, good
-            )
-            if len(which) == 0:
+        """Remove vertices of the contours that passed, as long as they still pass.
+
+        A polygon that passes is good, and the next trial omits vertices of it that seem unnecessary. If a trial fails,
+        the vertices beside the failure are restored and kept from then on.
+        """
+        ratio, left = self.options.max_ratio, [item for item in sorted(self.kept.items()) if self.passes(item[1])]
+        good: dict[int, tuple[Round, int]] = {}
+        keep, needed = dict[int, BoolArray](), dict[int, BoolArray]()  # of the vertices of good polygons
+        for _ in range(THINNINGS[self.options.effort]):
+            places = {}
+            for k, (found, i) in left:
+                bounds = found.part(found.trial.bounds, i)
+                if found.most[i] <= self.near:
+                    needed[k] = needed[k][keep[k]] if k in good else np.zeros(len(bounds), dtype=np.bool_)
+                    good[k], keep[k] = (found, i), np.ones(len(bounds), dtype=np.bool_)
+                trial, part = good[k][0].trial, partial(good[k][0].part, i=good[k][1])
+                if found.most[i] > self.near:
+                    back = steps.put_back(part(trial.points), keep[k], bounds, self.near, ratio)
+                    keep[k], needed[k] = back, needed[k] | (back & ~keep[k])
+                if keep[k].all():
+                    turns = self.contours.turns[slice(*self.contours.offsets[k : k + 2])]
+                    # Optimistic: the error grows with the length alone, as each trial is measured.
+                    keep[k] = steps.sparse(
+                        part(trial.points), part(trial.places), turns, self.angle, bool(self.hold[k]), needed[k],
+                        part(trial.gaps), self.near, ratio, 1.0,
+                    )  # fmt: skip
+                if not keep[k].all():
+                    places[k] = part(trial.places)[keep[k]]
+            if not places:
                 break
-            trial = self.attempt(which, places, offsets).trial
+            offsets = offsets_of([len(part) for part in places.values()])
+            found = self.attempt(np.array([*places]), np.concatenate([*places.values()]), offsets)
+            left = [(k, (found, i)) for i, k in enumerate(places)]
 
     def fair(self) -> None:
         """Let vertices leave the outline where a contour that passed bends more often than it has to."""
