@@ -16,9 +16,6 @@ SLIDE = 0.001
 HOPELESS = (1e3, 6.0, 2.0, 1.4, 1.2)
 """A fit is abandoned after round m if its error exceeds entry m, in tolerances. Lower values lose good fits."""
 
-LONGEST, SHORTEST = 4 / 3, 1 / 30
-"""Lengths between which handles are kept, in chords."""
-
 
 @compiled
 def fit_cubic(
@@ -80,7 +77,7 @@ def fit_cubic(
             # The last handle runs from the inner point to the end, so it moves the other way.
             h, sign = handles[end], 1 - 2 * end
             x1, y1 = h[0] + sign * g[2 * end] / chord, h[1] + sign * g[2 * end + 1] / chord
-            ux, uy, size = limited(h[0], h[1], x1, y1, SHORTEST, LONGEST)
+            ux, uy, size = limited(h[0], h[1], x1, y1, 1 / 30, 4 / 3)
             if not free[end]:
                 ux, uy = directions[end, 0], directions[end, 1]
             h[0], h[1] = ux * size, uy * size

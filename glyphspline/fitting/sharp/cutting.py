@@ -110,9 +110,8 @@ def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: Settings
             i, j = own.joints[q, 0], own.joints[q, 1]
             if own.errors[q] <= settings.near:
                 done = copy_piece(own, q, pieces, done, m if flipped else 0)
-            elif flipped:
-                done = add_source(pieces, done, c, m - j, m - i, chain, degrees)
             else:
+                i, j = (m - j, m - i) if flipped else (i, j)
                 done = add_source(pieces, done, c, i, j, chain, degrees)
     at = chains.offsets[count]
     chains = Chains(chains.cubics[:, :at].copy(), chains.degrees[:at], chains.offsets, chains.flipped)

@@ -14,9 +14,6 @@ from .spline_curve import SHORT, Curve
 EXTRA = 6
 """Most points of the curve between two feet that count as rows of their own."""
 
-ASIDE, BENT = 1.0, 0.5
-"""What a unit of slip costs across the curve, by the sine of a master's angle to the others and by its bend."""
-
 
 class Samples(NamedTuple):
     """The stretch of outline that a curve follows.
@@ -191,8 +188,8 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
         for v in range(masters):
             slip = (at[v] - mean / total) * speed[v] if total > 0.0 else 0.0
             aside = abs(nx * rows.ny[v, j] - ny * rows.nx[v, j]) / size
-            # Most that a unit of slip counts.
-            lever = min(ASIDE * (1 - 1 / masters) * aside + BENT * bend[v] * abs(slip), 2.0)
+            # What a unit of slip costs across the curve, by the sine of a master's angle to the others and by its bend.
+            lever = min((1 - 1 / masters) * aside + 0.5 * bend[v] * abs(slip), 2.0)
             rows.slip[v, j], rows.lever[v, j] = slip, lever
             worst = max(worst, abs(rows.e[v, j]) + lever * abs(slip))
     return worst
@@ -264,10 +261,12 @@ def _wrapped(s: int, k: int) -> int:
 def copy_rows(source: Rows, target: Rows) -> None:
     """Copy the rows in use."""
     for v in range(len(source.used)):
-        n = target.used[v, 0] = source.used[v, 0]
-        target.span[v, :n], target.x[v, :n], target.e[v, :n] = source.span[v, :n], source.x[v, :n], source.e[v, :n]
-        target.nx[v, :n], target.ny[v, :n] = source.nx[v, :n], source.ny[v, :n]
-    target.slip[:], target.lever[:] = source.slip, source.lever
+        target.used[v, 0] = source.used[v, 0]
+        for r in range(source.used[v, 0]):
+            target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
+            target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
+        for r in range(source.slip.shape[1]):
+            target.slip[v, r], target.lever[v, r] = source.slip[v, r], source.lever[v, r]
 
 
 @compiled

