@@ -12,9 +12,6 @@ from ..outlines.contour_arrays import ContourArrays
 from ..types import FloatArray
 from .turns import NO_HANDLE
 
-QUARTER = np.pi / 2
-"""A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four."""
-
 SLACK = np.radians(10.0)
 """Turn beyond whole quarters that needs no further maximum."""
 
@@ -117,7 +114,8 @@ def lumps_of(
             if height >= least_height:
                 peaks[size, 0], peaks[size, 1], peaks[size, 2] = at[k], sizes[k] / max(beside, least) - 1, height
                 size += 1
-    needed = max(1, int(np.ceil((turned(cubics, begin, end, sign, whole) - SLACK) / QUARTER)))
+    # A bend has one maximum of curvature for each quarter of a turn: a superelliptic o has four.
+    needed = max(1, int(np.ceil((turned(cubics, begin, end, sign, whole) - SLACK) / (np.pi / 2))))
     while size > 1:
         worst, close = 0, False
         for k in range(size if whole else size - 1):

@@ -29,9 +29,9 @@ from .segments import ROUNDING, Segments, rows
 SHARP = np.radians(30.0)
 """Angle between the sides of a spike's tip, at most."""
 
-STEPS, HALVINGS, MOST_HALVINGS = 16, 20, 128
-"""Chords a segment on the two sides of a spur. Halvings of a chord, for the place where the sides of a spur part. Most
-halvings of a segment for a ray: those around the ray's beginning are points by then."""
+STEPS, MOST_HALVINGS = 16, 128
+"""Chords a segment on the two sides of a spur. Most halvings of a segment for a ray: those around the ray's beginning
+are points by then."""
 
 
 def enclosed_findings(
@@ -235,7 +235,7 @@ def spur_length(cubics: FloatArray, joint: int, apart: float) -> float:
             near, back = beyond, back + 1
         if near > apart:
             low, high = begin, end
-            for _ in range(HALVINGS):
+            for _ in range(20):  # for the place on the chord where the sides part
                 t = (low + high) / 2
                 x, y, _, _, _, _ = jet(cubics, segment, t)
                 if beside_chord(cubics, joint, back, x, y) > apart:

@@ -37,10 +37,6 @@ DEVIATION = np.sqrt(1 / 12)
 LEVEL = np.tan(np.radians(10.0))
 """Slope from which a handle is not meant to be level."""
 
-END, ALIKE = np.radians(45.0), 0.5
-"""Turn from which a corner ends a stroke. Share that the lesser turn of its two sides has of the other one at least:
-with less, one side alone that kinks would be passed over."""
-
 WHAT, CONTOUR, PLACE, VALUE, DETAIL, OTHER, SEEN = range(7)
 """Columns of the table (n, 7) that passes return: number of the kind; contour; place on it, segment and local
 parameter; value in the kind's unit, curvatures in 1/unit; second number, or NaN; another contour, or -1; how far it is
@@ -176,7 +172,8 @@ def ends_stroke(segments: Segments, i: int, j: int) -> bool:
         return False
     one, two = turn_of(last[a], first[b]), turn_of(last[b], first[c])
     low, high = min(abs(here), abs(there)), max(abs(here), abs(there))
-    return one * two > 0 and min(abs(one), abs(two)) > END and here * there < 0 and low >= ALIKE * high
+    # The lesser turn of the two sides is half of the other one at least, or one side that kinks would be passed over.
+    return one * two > 0 and min(abs(one), abs(two)) > np.pi / 4 and here * there < 0 and low >= 0.5 * high
 
 
 @compiled

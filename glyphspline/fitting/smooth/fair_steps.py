@@ -29,13 +29,6 @@ SMALL = 0.3
 FLAT = 10 * TURN
 """Over the length of the contour, the curvature below which changes count as if it were this."""
 
-BARRIER, WEAKER = 0.2, 0.5
-"""The barrier's first weight, and its share from step to step."""
-
-BAND, CLOSED_BAND = 3, 6
-"""Diagonals of the equations beside the first: a span has four control points. With the rows of a closed curve folded,
-neighbours are twice as far apart."""
-
 
 class Moves(NamedTuple):
     """The control points of a contour that move along normals, and the spans that move with them.
@@ -90,25 +83,35 @@ def move_controls(
     """
     moves = _numbered(normals, moving)
     at = _sampled(outline, ends, intervals, limits, near, moves, controls)
-    total, weight, left = len(at.jets), BARRIER, 0
+    total, kappa, bend, by, weight, left = len(at.jets), at.kappa, at.bend, at.by, 0.2, 0
     found, delta = np.empty(total + 1, dtype=np.int64), np.zeros(len(limits))
     for step in range(STEPS):
-        _bend(at)
-        extrema = swings(at.kappa, total, 0, total, 1.0, SHARE, significant, found)
+        for s in range(total):  # curvature of all samples and its derivatives by the moves
+            dx, dy, ax, ay = at.jets[s, 0], at.jets[s, 1], at.jets[s, 2], at.jets[s, 3]
+            inverse = 1.0 / (dx * dx + dy * dy)
+            cube = inverse * np.sqrt(inverse)
+            kappa[s] = (dx * ay - dy * ax) * cube
+            share = 3 * kappa[s] * inverse
+            p, q, dx, dy = ay * cube - share * dx, -ax * cube - share * dy, dx * cube, dy * cube
+            for c in range(4):
+                bend[s, c] = by[s, 0, c] * p + by[s, 1, c] * q + by[s, 3, c] * dx - by[s, 2, c] * dy
+        kappa[total], bend[total] = kappa[0], bend[0]
+        extrema = swings(kappa, total, 0, total, 1.0, SHARE, significant, found)
         if step == 0:
             left = extrema - surplus
         elif extrema <= left:
             break
         _newton(moves, at, weight, FLAT * significant, near, delta)
         _advance(moves, at, delta, controls)
-        weight *= WEAKER
+        weight *= 0.5  # of the barrier
 
 
 @compiled
 def _numbered(normals: FloatArray, moving: BoolArray) -> Moves:
     """Number the control points that move, from the first span of a row of such on.
 
-    Of a contour that moves as a whole, the rows of the equations are folded, so that all neighbours are near.
+    Of a contour that moves as a whole, the rows of the equations are folded, so that all neighbours are near: twice as
+    far apart as others. A span has four control points, and so the equations three diagonals beside the first.
     """
     n, first, M, unknowns = len(moving), 0, 0, 0
     while first < n and moving[first - 1]:
@@ -130,7 +133,7 @@ def _numbered(normals: FloatArray, moving: BoolArray) -> Moves:
     for j in range(n if first == n else 0):
         if order[j] >= 0:
             order[j] = 2 * order[j] if 2 * order[j] < unknowns else 2 * (unknowns - 1 - order[j]) + 1
-    width = BAND if first < n else CLOSED_BAND
+    width = 3 if first < n else 6
     return Moves(normals, moving, order, unknowns, width, spans[:M], four[:M], runs[:M], run)
 
 
@@ -165,7 +168,16 @@ def _sampled(
             if k > 0:
                 point[0, 0, 0], point[0, 0, 1] = px, py
                 place = near_place(1, outline, place, ends[at], ends[at + 1], point, 0)
-            nx, ny, distance = _off_outline(outline, place, px, py, dx, dy, 0.02 * near)
+            # The direction in which the curve leaves the outline, on its left, and its signed distance from there. At a
+            # joint, which may be a corner, the direction is that of the point, if this is far enough to have one.
+            on = int(np.floor(place))
+            qx, qy, _, _, _, _ = jet(outline, on % len(outline), place - on)
+            ex, ey, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)
+            nx, ny, distance = -dy / speed, dx / speed, np.sqrt(ex * ex + ey * ey)
+            if place == on and distance > 0.02 * near:
+                sign = 1.0 if ex * nx + ey * ny >= 0 else -1.0
+                nx, ny = sign * ex / distance, sign * ey / distance
+            distance = ex * nx + ey * ny
             row, of[count], count = rows[count], m, count + 1
             row[0], row[1] = distance, max(limits[at], 1.02 * abs(distance) + 1e-9 * near)
             for c in range(4):
@@ -173,42 +185,6 @@ def _sampled(
                 row[2 + c] = basis[0, c] * (normal[0] * nx + normal[1] * ny)
     kappa, bend = np.empty(s + 1), np.empty((s + 1, 4))
     return Sampled(jets[:s], by[:s], kappa, bend, rows[:count], of[:count])
-
-
-@inlined
-def _off_outline(
-    outline: FloatArray, place: float, px: float, py: float, dx: float, dy: float, apart: float
-) -> tuple[float, float, float]:
-    """The direction in which a point of a curve leaves the outline, on its left, and its signed distance from there.
-
-    Args:
-        place: where the outline is nearest. (dx, dy): derivative of the curve.
-        apart: distance from which on the direction from a joint, which may be a corner, is that of the point.
-    """
-    on = int(np.floor(place))
-    qx, qy, _, _, _, _ = jet(outline, on % len(outline), place - on)
-    px, py, speed = px - qx, py - qy, np.sqrt(dx * dx + dy * dy)
-    nx, ny, distance = -dy / speed, dx / speed, np.sqrt(px * px + py * py)
-    if place == on and distance > apart:
-        sign = 1.0 if px * nx + py * ny >= 0 else -1.0
-        nx, ny = sign * px / distance, sign * py / distance
-    return nx, ny, px * nx + py * ny
-
-
-@compiled
-def _bend(at: Sampled) -> None:
-    """Curvature of all samples and its derivatives by the moves."""
-    total, kappa, bend, by = len(at.jets), at.kappa, at.bend, at.by
-    for s in range(total):
-        dx, dy, ax, ay = at.jets[s, 0], at.jets[s, 1], at.jets[s, 2], at.jets[s, 3]
-        inverse = 1.0 / (dx * dx + dy * dy)
-        cube = inverse * np.sqrt(inverse)
-        kappa[s] = (dx * ay - dy * ax) * cube
-        share = 3 * kappa[s] * inverse
-        p, q, dx, dy = ay * cube - share * dx, -ax * cube - share * dy, dx * cube, dy * cube
-        for c in range(4):
-            bend[s, c] = by[s, 0, c] * p + by[s, 1, c] * q + by[s, 3, c] * dx - by[s, 2, c] * dy
-    kappa[total], bend[total] = kappa[0], bend[0]
 
 
 @compiled

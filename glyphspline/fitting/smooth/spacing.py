@@ -36,13 +36,6 @@ AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
 GROWTH, FASTEST = 0.97, 4.0
 """Share of the ratio allowed by which chords grow, and the ratio beyond which faster growth takes more of them."""
 
-AT_HELD = 0.167
-"""Chords growing by 4 away from a corner whose control point is held: the curve is off by this times the chord beside
-the corner and the sine of half its angle, at the corner alone."""
-
-NEAR_HELD = 0.78
-"""Distance of the control points beside a held corner from it, in chords, for the error at the corner."""
-
 AT_CORNER_3, GROWTH_3 = 0.1, 2.5
 """The same for variant 3."""
 
@@ -52,15 +45,8 @@ BEND = 2.5
 FEWEST, MOST = 4, 2000
 """Vertices that a contour has at least, and up to which its polygon is refined."""
 
-BELOW, BELOW_HELD, LEAST = 0.95, 0.985, 0.4
-"""Of a failed span, and of one beside a held corner, the share tried of the length by which it would just pass, and the
-least share of its own."""
-
 SHORTEST = 1e-5
 """No span shorter than this share of the contour is divided: it would end in duplicate vertices."""
-
-MARGIN = 0.3
-"""Share of a span at either end where it is not divided."""
 
 
 @compiled
@@ -118,7 +104,8 @@ def first_field(
         for j in range(m):
             # Corners count as if the sine of their angle were at least this.
             if hold and turns[j] >= corner_angle:
-                h = first / AT_HELD * near / max(np.sin(turns[j] / 2), 0.1)
+                # Chords growing by 4, the curve is off by this times the chord and the sine, at the corner alone.
+                h = first / 0.167 * near / max(np.sin(turns[j] / 2), 0.1)
             else:
                 h = first / at_corner * near / max(np.sin(turns[j]), 0.1) if turns[j] > 0.01 else np.inf
             jump = abs(curvature[j, 0] - curvature[j - 1, TABLE])
@@ -214,8 +201,8 @@ def off_corners(points: FloatArray, corners: IntArray, turns: FloatArray) -> Flo
         for v in range(0, points.shape[1], 2):
             x, y = points[:, v], points[:, v + 1]
             g, h = length(x[i] - x[i - 1], y[i] - y[i - 1]), length(x[(i + 1) % n] - x[i], y[(i + 1) % n] - y[i])
-            # How far the two control points beside the corner draw the curve, which are about a chord away from it.
-            a, b = NEAR_HELD * e * e * g / ((d + e) * (c + d + e)), NEAR_HELD * d * d * h / ((d + e) * (d + e + f))
+            # How far the two control points beside the corner draw the curve, which are 0.78 chords away from it.
+            a, b = 0.78 * e * e * g / ((d + e) * (c + d + e)), 0.78 * d * d * h / ((d + e) * (d + e + f))
             errors[i - 1] = errors[i] = max(
                 np.sqrt(a * a + b * b - 2 * a * b * np.cos(turns[k])), max(errors[i - 1], errors[i])
             )
@@ -247,8 +234,8 @@ def lowered(
                     # shorter than the field by whole / spans, for their number to be whole.
                     # Beside held corners it grows with the length: the curve is off at the corner.
                     beside = hold and (j == 0 or j == spans - 1)
-                    share = BELOW_HELD * near / errors[i] if beside else BELOW * (near / errors[i]) ** 0.25
-                    shares[i] = max(share, LEAST) * min(whole / spans, 1.0)
+                    share = 0.985 * near / errors[i] if beside else 0.95 * (near / errors[i]) ** 0.25
+                    shares[i] = max(share, 0.4) * min(whole / spans, 1.0)
     for i in range(n):
         start, stop = places[i] * TABLE, places[(i + 1) % n] * TABLE
         if i == n - 1:
@@ -328,7 +315,7 @@ def with_more(
         # What is wrong with a span is most often wrong with its worse neighbour.
         if errors[i] > near and errors[i] >= max(errors[i - 1], errors[(i + 1) % n]):
             parts[i] = 2 if errors[i] < 6 * near else (3 if errors[i] < 30 * near else 4)
-            shares[i] = min(max((length_at(lengths, worst[i]) - at[i]) / h[i], MARGIN), 1 - MARGIN)
+            shares[i] = min(max((length_at(lengths, worst[i]) - at[i]) / h[i], 0.3), 1 - 0.3)
     return divided(lengths, places, at, h, parts, shares)
 
 
