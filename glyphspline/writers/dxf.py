@@ -34,9 +34,6 @@ from ..outlines.polygons import flattened, polygons_of
 from ..types import INCHES, BoolArray, FloatArray
 from .settings import NO_HANDLE, SMOOTH, Appearance, DxfKind, Settings
 
-VERSION = "R2000"
-"""The oldest version that has SPLINE, LWPOLYLINE and $INSUNITS; programs read it, whatever their age."""
-
 UNITS = {None: 0, "in": 1, "mm": 4, "cm": 5}
 """Values of $INSUNITS. Other units of lengths are written as millimetres."""
 
@@ -119,7 +116,8 @@ def write(result: GlyphResult, settings: Settings) -> str:
         before = ezdxf.options.write_fixed_meta_data_for_testing
         ezdxf.options.write_fixed_meta_data_for_testing = True
         try:
-            document = ezdxf.new(VERSION, units=UNITS[unit])
+            # The oldest version that has SPLINE, LWPOLYLINE and $INSUNITS; programs read it, whatever their age.
+            document = ezdxf.new("R2000", units=UNITS[unit])
             document.header["$MEASUREMENT"] = int(unit != "in")
             for layer, colour in zip(LAYERS, COLOURS, strict=True):
                 document.layers.add(layer, color=colour)

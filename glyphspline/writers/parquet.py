@@ -33,6 +33,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import fields
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -74,24 +75,14 @@ def write_table(source: Source, glyphs: Iterable[GlyphResult], file: Any, group:
     """Write the table to a path or a binary file; returns the number of rows.
 
     Args:
-        group: contours in a row group: held in memory while writing, with the rest of a glyph.
+        group: contours in a row group: held in memory while writing, with some glyphs more.
 
     Raises:
         GlyphsplineError: pyarrow, of the extra ``parquet``, is not installed.
     """
-
-    def tables() -> Iterator[Any]:
-        waiting, held = list[GlyphResult](), 0
-        for glyph in glyphs:
-            waiting.append(glyph)
-            held += len(glyph.contours)
-            if held >= group:
-                yield rows(names, waiting)
-                waiting, held = [], 0
-        yield rows(names, waiting)
-
-    names = source.family, source.style
-    return write_rows(tables(), file, group)
+    every = iter(glyphs)
+    batches = iter(lambda: list(islice(every, 64)), [])
+    return write_rows((rows((source.family, source.style), batch) for batch in batches), file, group)
 
 
 def write_rows(tables: Iterable[Any], file: Any, group: int = 512) -> int:

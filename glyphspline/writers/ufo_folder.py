@@ -28,7 +28,7 @@ from fontTools.designspaceLib import DesignSpaceDocument
 from fontTools.ufoLib import UFOWriter
 from fontTools.varLib.models import VariationModel
 
-from ..errors import GlyphsplineError, OutputError
+from ..errors import OutputError
 from ..fitting.results import ContourResult, GlyphResult
 from ..outlines.extrema import with_extrema
 from ..outlines.masters import DesignAxis, Masters
@@ -54,12 +54,10 @@ def write_ufo(source: Source, glyphs: Iterable[GlyphResult], path: str | Path, *
         path: the folder. family: the name; None is the source's with "Spline".
 
     Raises:
-        GlyphsplineError: something at ``path`` is not a UFO. OSError: it cannot be written.
+        OutputError: something at ``path`` is not a UFO. OSError: it cannot be written.
     """
     path = Path(path)
-    if path.is_symlink() or (path.exists() and not (path / "metainfo.plist").exists()):
-        raise GlyphsplineError("is there already, and is no UFO", font=str(path))
-    with replacing(path) as partial:
+    with replacing(path, "is no UFO", "metainfo.plist") as partial:
         writer = _opened(partial, source, family or f"{source.family} Spline", source.style)
         layers = [writer.getGlyphSet(), writer.getGlyphSet(layerName=BACKGROUND, defaultLayer=False)]
         order = []
@@ -88,22 +86,26 @@ def write_designspace(
         OSError: it cannot be written.
     """
     path = Path(path)
-    if path.is_symlink() or (path.exists() and not (path.is_dir() and list(path.glob("*.designspace")))):
-        raise OutputError("is there already, and holds no designspace", font=str(path))
-    left = {name: reason for name, new in redrawn.items() if (reason := unlike_regions(new.masters))}
-    chosen = MadeOnDemand([name for name in redrawn if name not in left], redrawn.__getitem__)
-    if not chosen:
-        why = f": {next(iter(left.values()))}" if left else ""
-        raise OutputError(f"no glyph to write{why}", font=str(path))
-    with replacing(path) as partial:
+    with replacing(path, "holds no designspace", "*.designspace") as partial:
+        left = {name: reason for name, new in redrawn.items() if (reason := unlike_regions(new.masters))}
+        chosen = MadeOnDemand([name for name in redrawn if name not in left], redrawn.__getitem__)
+        if not chosen:
+            why = f": {next(iter(left.values()))}" if left else ""
+            raise OutputError(f"no glyph to write{why}", font=str(path))
         partial.mkdir(parents=True)
         _write(source, chosen, partial, family or source.family)
     return left
 
 
 @contextmanager
-def replacing(folder: Path) -> Iterator[Path]:
-    """A folder beside another one, to be filled within; it then takes that one's place."""
+def replacing(folder: Path, otherwise: str, *marks: str) -> Iterator[Path]:
+    """A folder beside another one, to be filled within; it then takes that one's place.
+
+    Raises:
+        OutputError: what is there has none of the files ``marks``, which the error says in the words ``otherwise``.
+    """
+    if folder.is_symlink() or (folder.exists() and not any(any(folder.glob(mark)) for mark in marks)):
+        raise OutputError(f"is there already, and {otherwise}", font=str(folder))
     partial = folder.with_name(f".{folder.name}.part")
     shutil.rmtree(partial, ignore_errors=True)
     yield partial

@@ -128,11 +128,7 @@ def write_back(
         return found
     if copy is None or dry:
         return _edited(source, glyphs, digits, _UfoEdit(Path(), Path(), layer), dry)
-    if copy.is_symlink() or (
-        copy.exists() and not ((copy / "metainfo.plist").exists() or [*copy.rglob("*.designspace")])
-    ):
-        raise OutputError("is there already, and is no source of a font", font=str(copy))
-    with replacing(copy) as partial:
+    with replacing(copy, "is no source of a font", "metainfo.plist", "**/*.designspace") as partial:
         return _edited(source, glyphs, digits, _UfoEdit(_copied(source, partial), partial, layer), dry)
 
 

@@ -17,7 +17,7 @@ from ...outlines.masters import Masters
 from ...readers.opentype.variations import executed
 from ...types import FloatArray, IntArray
 from ..font.font_glyphs import put_string
-from ..font.master_deltas import region_key
+from ..font.master_deltas import order_of
 from ..font.variable_font import CharStrings2, blend
 from .stored import NEAR, OTHERWISE, REGIONS, Stored, matched
 
@@ -36,16 +36,14 @@ class CharStringContours(Stored):
         self._name, self._glyph, self._is_cff2 = name, glyph, "CFF2" in font
         self._strings = font["CFF2" if self._is_cff2 else "CFF "].cff.topDictIndex[0].CharStrings
         self._commands, regions = commands_of(font, self._strings[name])
-        known = {region_key(region): 1 + k for k, region in enumerate(glyph.regions)}
-        keys = [region_key(region) for region in regions]
-        has_all = not keys or (set(keys) == known.keys() and len(keys) == len(known))
-        if self._commands is None or not has_all:
+        order = order_of(regions, glyph) if regions else []
+        if self._commands is None or order is None:
             why = OTHERWISE if self._commands is None else REGIONS
             super().__init__(why=dict.fromkeys(range(len(glyph.contours)), why))
             return
-        self._order = [0, *(known[key] for key in keys)]
-        self._read = drawn_by(self._commands, len(keys))
-        scalars = glyph.scalars(glyph.peaks)[:, self._order]
+        self._order = [0, *order]
+        self._read = drawn_by(self._commands, len(regions))
+        scalars = glyph.at_peaks[:, self._order]
         stored = [closed(np.einsum("kj,njc->knc", scalars, points), degrees) for _, points, degrees in self._read]
         super().__init__(*matched(glyph, stored))
 
@@ -56,7 +54,7 @@ class CharStringContours(Stored):
             GlyphsplineError: a point moves in a master whose region the char string has not.
         """
         assert self._commands is not None
-        varies = np.linalg.inv(self._glyph.scalars(self._glyph.peaks))
+        varies = np.linalg.inv(self._glyph.at_peaks)
         whole = [(places, points.copy()) for places, points, _ in self._read]
         for (_, points), index in zip(whole, self.owns, strict=True):
             if index is None:
@@ -132,22 +130,13 @@ def drawn_by(commands: Sequence[tuple[str, list[Any]]], regions: int) -> list[Re
         elif name not in ("rlineto", "rrcurveto"):
             continue
         for k in range(0, len(args), 2):
-            at = at + np.stack([_column(arg, regions) for arg in args[k : k + 2]], axis=1)
+            pair = [arg[:-1] if isinstance(arg, list) else [arg, *[0.0] * regions] for arg in args[k : k + 2]]
+            at = at + np.array(pair, dtype=np.float64).T
             contours[-1][0].append((number, k))
             contours[-1][1].append(at)
         if name != "rmoveto":
             contours[-1][2].append(len(args) // 2)
     return [(places, np.array(points), degrees) for places, points, degrees in contours]
-
-
-def _column(arg: Any, regions: int) -> FloatArray:
-    """(1 + R,) a number, blended or not, as a default and deltas."""
-    found = np.zeros(1 + regions)
-    if isinstance(arg, list):
-        found[: len(arg) - 1] = arg[:-1]
-    else:
-        found[0] = arg
-    return found
 
 
 def closed(points: FloatArray, degrees: Sequence[int]) -> tuple[FloatArray, IntArray]:

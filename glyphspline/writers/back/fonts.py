@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
-from io import BytesIO
 from pathlib import Path
 
 from fontTools.ttLib.tables._g_l_y_f import Glyph
@@ -18,6 +17,7 @@ from ...errors import OutputError
 from ...files import write_whole
 from ...outlines.masters import Masters
 from ...readers import Font
+from ..font.font_file import drop_signature, saved
 from ..font.variable_glyf import Gvar, placed_by_points, put_glyphs
 from .char_strings import CharStringContours
 from .glyf_contours import GlyfContours
@@ -81,17 +81,14 @@ class FontEdit:
         follows = put_glyphs(font, self._new) if is_glyf else False
         if is_glyf and self._gvar is not None:
             self._gvar.store(font)
-        if getattr(font.get("DSIG"), "signatureRecords", None):
-            del font["DSIG"]  # a signature of the bytes as they were
+        drop_signature(font)
         for tag in font.reader.keys() if font.reader else ():
             if tag in font.tables and tag not in OUTLINES and not (tag == "head" or (follows and tag in BOUNDS)):
                 raw = DefaultTable(tag)
                 raw.data = font.reader[tag]
                 font.tables[tag] = raw
         font.flavor = {"WOFF": "woff", "WOFF2": "woff2"}.get(source.format)
-        file = BytesIO()
-        font.save(file, reorderTables=False)
-        return file.getvalue()
+        return saved(font)
 
 
 def write_points(

@@ -50,27 +50,21 @@ def replaced(
         held: places at which a point has to stay, by master. keeps_flags: points that stay are smooth
             if they were. Without it those that are smooth now are so, too.
     """
-    if any(node.kind == "move" for nodes in old for node in nodes):
-        return "is open"
-    if any(node.kind == "qcurve" for nodes in old for node in nodes):
-        return "is drawn in quadratics"
+    if (why := _unlike(old)) is not None:
+        return why
     rounded = [contour.rounded(digits) for contour in new]
-    first = next((node.at for node in old[0] if node.kind), None)
     starts = rounded[0].points[rounded[0].offsets]
-    shift = 0 if first is None else int(np.hypot(*(starts - first).T).argmin())
-    smooth = smooth_ends(rounded)
     flags = {node.at: node.smooth for node in old[0] if node.kind}
-    places = rounded[0].points[rounded[0].offsets].tolist()
+    shift = int(np.hypot(*(starts - next(iter(flags))).T).argmin()) if flags else 0
     smooth = [
-        flags.get((x, y), flag) or (flag and not keeps_flags) for (x, y), flag in zip(places, smooth, strict=True)
+        flags.get((x, y), flag) or (flag and not keeps_flags)
+        for (x, y), flag in zip(starts.tolist(), smooth_ends(rounded), strict=True)
     ]
     made = [nodes_of(contour, smooth, shift) for contour in rounded]
     before = [_from_the_curve(nodes) for nodes in old]
     as_given = [nodes_of(contour, smooth, shift) for contour in new]  # what stays may have more decimals
-    if any(
-        [[node[:2] for node in nodes] for nodes in each] == [[node[:2] for node in nodes] for nodes in before]
-        for each in (made, as_given)
-    ):
+    drawn, *others = ([[node[:2] for node in nodes] for nodes in each] for each in (before, made, as_given))
+    if drawn in others:
         return None
     found = []
     for nodes, its, places in zip(made, before, held, strict=True):
@@ -99,10 +93,8 @@ def moved(
     """
     if all(np.array_equal(a.points, b.points) for a, b in zip(old, new, strict=True)):
         return None
-    if any(node.kind == "move" for own in nodes for node in own):
-        return "is open"
-    if any(node.kind == "qcurve" for own in nodes for node in own):
-        return "is drawn in quadratics"
+    if (why := _unlike(nodes)) is not None:
+        return why
     places = [np.array([node.at for node in own]) for own in nodes]
     if any(at.shape != contour.points.shape for at, contour in zip(places, old, strict=True)):
         return "has points that are not read"
@@ -123,6 +115,12 @@ def moved(
         there = [tuple(at) if goes else node.at for node, at, goes in zip(own, to, moves, strict=True)]
         found.append([n._replace(at=(as_number(x), as_number(y))) for n, (x, y) in zip(own, there, strict=True)])
     return found
+
+
+def _unlike(masters: Sequence[Sequence[Node]]) -> str | None:
+    """Why a contour is none that curves are made of."""
+    kinds = {node.kind for nodes in masters for node in nodes}
+    return "is open" if "move" in kinds else "is drawn in quadratics" if "qcurve" in kinds else None
 
 
 def as_number(value: float) -> float | int:

@@ -26,18 +26,20 @@ PAGE = (11.69, 8.27)
 LEAST_SHOWN = 0.05
 """Degrees from which a turn is more than 0.0."""
 
-OfAxis = MastersResult | tuple[str, str]
-"""A result, or the name of a glyph without one and the reason."""
-
 
 def write_axis_atlas(
-    path: Path, glyphs: Iterable[OfAxis], tag: str, location: Mapping[str, float], scale: float, heading: str
+    path: Path,
+    glyphs: Iterable[MastersResult | tuple[str, str]],
+    tag: str,
+    location: Mapping[str, float],
+    scale: float,
+    heading: str,
 ) -> int:
     """Write the pages of glyphs along an axis as a PDF; the same glyphs give the same bytes.
 
     Args:
-        path: the PDF, replaced when it is complete. glyphs: in the order of the pages; those without a result are named
-            on the last. tag, location, scale, heading: as for :func:`axis_page`.
+        path: the PDF, replaced when it is complete. glyphs: results in the order of the pages, or the name of a glyph
+            without one and the reason, for the last page. tag, location, scale, heading: as for :func:`axis_page`.
 
     Returns:
         The number of pages.

@@ -126,9 +126,9 @@ def to_font(
                 beyond.append(result.outline.name)
         target.finish()
         rename(font, family, source.style)
-        data = _saved(font)
+        data = saved(font)
         if flavour == "otf" and _grew(font, data) and share_subroutines(font):
-            data = _saved(font)
+            data = saved(font)
     largest = max((error for error in errors if error is not None), default=None)
     return data, FontSummary(family, len(errors), largest, tuple(beyond), added)
 
@@ -142,8 +142,8 @@ class _InPlace:
         self.is_g2 = False
         self.new: dict[str, Any] = {}  # for "glyf", which is read until all glyphs are known
         if flavour == "otf":
-            self.strings = font["CFF "].cff.topDictIndex[0].CharStrings
             top = font["CFF "].cff.topDictIndex[0]
+            self.strings = top.CharStrings
             fonts = [each.Private for each in getattr(top, "FDArray", [top])]
             zones = [{key: getattr(each, key, None) for key in ZONES} for each in fonts]
             try:
@@ -193,7 +193,8 @@ class _InPlace:
             metrics[name] = (metrics[name][0], metrics[name][1] + glyf[name].xMin - left)
 
 
-def _saved(font: TTFont) -> bytes:
+def saved(font: TTFont) -> bytes:
+    """The font as a file's bytes."""
     file = BytesIO()
     font.save(file, reorderTables=False)
     return file.getvalue()
@@ -273,9 +274,7 @@ class _Rebuilt:
 
     def __init__(self, font: TTFont, source: Source, flavour: Flavour, family: str) -> None:
         self.font, self.source, self.flavour, self.family = font, source, flavour, family
-        self.of_name = {name: name for name in source.glyph_names}
-        if font.getGlyphOrder()[0] == source.glyph_names[0]:  # names may differ, their order is the same
-            self.of_name = dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
+        self.of_name = stored_names(source, font)
         self.glyphs: dict[str, Any] = {}
 
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
@@ -308,6 +307,12 @@ class _Rebuilt:
             log.warning("%s: left empty in the written font", error)
             empty = Outline(name, metrics=self.source.metrics)
             return drawn_outline(empty, self.flavour), empty
+
+
+def stored_names(source: Source, font: TTFont) -> dict[str, str]:
+    """Names of the source's glyphs to those in the font, whose order is the source's if that is a font's."""
+    order = font.getGlyphOrder() if isinstance(source, Font) else source.glyph_names
+    return dict(zip(source.glyph_names, order, strict=True))
 
 
 def set_bearings(font: TTFont, name: str, drawn: Drawn, outline: Outline) -> None:
@@ -345,6 +350,19 @@ def write_font(
     return summary
 
 
+def drop(font: TTFont, *tags: str) -> None:
+    """Remove those of the tables that the font has."""
+    for tag in tags:
+        if tag in font:
+            del font[tag]
+
+
+def drop_signature(font: TTFont) -> None:
+    """Remove a signature, which is of the bytes as they were."""
+    if getattr(font.get("DSIG"), "signatureRecords", None):
+        del font["DSIG"]
+
+
 def base_tables(source: Source) -> TTFont:
     """The source's tables, static at its location; new tables without glyphs if the source is not a font."""
     if not isinstance(source, Font):
@@ -355,9 +373,7 @@ def base_tables(source: Source) -> TTFont:
     if source.axes:
         at = {axis.tag: source.location.get(axis.tag, axis.default) for axis in source.axes}
         font = instantiateVariableFont(font, at, inplace=True)
-    for tag in (*HINTS, *PICTURES, *SPENT):
-        if tag in font:
-            del font[tag]
+    drop(font, *HINTS, *PICTURES, *SPENT)
     font.flavor = font.flavorData = None
     return font
 
@@ -388,9 +404,7 @@ def new_tables(source: Source) -> TTFont:
 
 def become(font: TTFont, flavour: Flavour, glyphs: dict[str, Any], family: str) -> None:
     """Replace all glyphs of the font, of either flavour, by ``glyphs``."""
-    for tag in ("glyf", "loca", "CFF ", "CFF2"):
-        if tag in font:
-            del font[tag]
+    drop(font, "glyf", "loca", "CFF ", "CFF2")
     builder = FontBuilder(font=font)
     builder.isTTF = flavour == "ttf"
     builder.setupMaxp()

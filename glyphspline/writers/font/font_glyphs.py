@@ -276,8 +276,7 @@ def users(font: TTFont, parts: Iterable[str]) -> list[str]:
 
     def uses(name: str, above: tuple[str, ...]) -> bool:
         if name not in known:
-            glyph = glyf[name]
-            inside = [] if name in above or not glyph.isComposite() else [part.glyphName for part in glyph.components]
+            inside = () if name in above else glyf[name].getComponentNames(glyf)
             known[name] = any(uses(part, (*above, name)) for part in inside)
         return known[name]
 
@@ -295,9 +294,9 @@ def drop_endless(font: TTFont) -> None:
         if name in above or len(above) > 64 or name not in glyf.glyphs:
             return math.inf
         if name not in known:
-            glyph = glyf[name]
-            parts = [part.glyphName for part in glyph.components] if glyph.isComposite() else []
-            known[name] = len(getattr(glyph, "coordinates", ())) + sum(1 + size(part, (*above, name)) for part in parts)
+            parts = glyf[name].getComponentNames(glyf)
+            count = len(getattr(glyf[name], "coordinates", ()))
+            known[name] = count + sum(1 + size(part, (*above, name)) for part in parts)
         return known[name]
 
     for name in font.getGlyphOrder():
@@ -315,20 +314,13 @@ def put_string(strings: Any, name: str, new: Any) -> None:
 
 def parts_of(font: TTFont, name: str) -> list[str]:
     """The simple glyphs that a glyph of ``glyf`` is made of, in order, each once; itself if it is simple."""
-    found: dict[str, None] = {}
-    seen: set[str] = set()
-    waiting = [name]
+    glyf, known, waiting = font["glyf"], dict[str, bool](), [name]
     while waiting:
         name = waiting.pop()
-        if name in seen:
-            continue
-        seen.add(name)
-        glyph = font["glyf"][name]
-        if glyph.isComposite():
-            waiting += [part.glyphName for part in reversed(glyph.components)]
-        else:
-            found[name] = None
-    return list(found)
+        if name not in known:
+            known[name] = not glyf[name].isComposite()
+            waiting += reversed(glyf[name].getComponentNames(glyf))
+    return [name for name, simple in known.items() if simple]
 
 
 def decomposed(glyf: Any, name: str) -> Any:

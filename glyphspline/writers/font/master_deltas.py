@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import astuple, dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from ...curves.integrals import area
 from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters
 from ...types import BoolArray, FloatArray, IntArray, counted
-from .font_glyphs import LIMIT
+from .font_glyphs import LIMIT, Flavour
 
 
 @dataclass(frozen=True)
@@ -28,11 +31,7 @@ class Tally:
 
     def __add__(self, other: Tally) -> Tally:
         """Those of both."""
-        pairs = zip(
-            (*self.points, *self.kinks, *self.between), (*other.points, *other.kinks, *other.between), strict=True
-        )
-        a, b, c, d, e, f = (one + two for one, two in pairs)
-        return Tally((a, b), (c, d), (e, f))
+        return Tally(*map(tuple, (np.array(astuple(self)) + astuple(other)).tolist()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,13 +118,8 @@ def rounded_deltas(masters: Masters, points: FloatArray, parts: int) -> IntArray
         k, waiting = waiting[first], np.delete(waiting, first)
         acting = np.flatnonzero(others[k])
         left = wanted[k] - np.tensordot(scalars[k, acting], steps[acting], axes=1)
-        steps[k] = rounded_whole(left)
+        steps[k] = np.floor(np.round(left, 6) + 0.5)  # what is equal but for rounding errors is rounded alike
     return np.rint(steps).astype(np.int64)
-
-
-def rounded_whole(values: FloatArray) -> FloatArray:
-    """Whole numbers; values that are equal but for rounding errors are rounded alike."""
-    return np.asarray(np.floor(np.round(values, 6) + 0.5))
 
 
 def as_drawn(masters: Masters, steps: IntArray, parts: int) -> FloatArray:
@@ -151,3 +145,34 @@ def region_key(region: FloatArray) -> tuple[tuple[int, ...], ...]:
     return tuple(
         [(a, low, peak, high) for a, low, peak, high in counting if low <= peak <= high and not low < 0 < high]
     )
+
+
+def numbers_of(masters: Masters) -> dict[Any, int]:
+    """The keys of regions to the numbers of their masters; the default is 0."""
+    return {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
+
+
+def order_of(regions: Sequence[FloatArray], masters: Masters) -> list[int] | None:
+    """The numbers of the masters of regions; None if these are others than those of the glyph."""
+    known, keys = numbers_of(masters), [region_key(region) for region in regions]
+    return [known[key] for key in keys] if len(keys) == len(known) and set(keys) == known.keys() else None
+
+
+def axes_of(tags: Iterable[str], region: Sequence[Sequence[float]]) -> dict[str, tuple[float, ...]]:
+    """A region as fontTools has it: start, peak and end on the axes that count."""
+    return {tag: tuple(three) for tag, three in zip(tags, region, strict=True) if three[1]}
+
+
+def oriented(new: Redrawn, flavour: Flavour) -> Redrawn:
+    """The glyph with ink to the right of its contours in the default, as TrueType has it, or to their left.
+
+    Quadratics are not compared with the source's, which are others: their bounds are none.
+    """
+    if flavour == "ttf" and new.tally is None:
+        new = Redrawn(new.masters, new.contours, new.inner)
+    total = sum(area(contour.cubics()[0]) for contour in new.contours)
+    if (total >= 0) == (flavour == "otf") or total == 0:
+        return new
+    masters = replace(new.masters, contours=[contour.reversed() for contour in new.masters.contours], repeats=None)
+    inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)
+    return replace(new, masters=masters, contours=tuple(c.reversed() for c in new.contours), inner=inner)

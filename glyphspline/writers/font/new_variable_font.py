@@ -20,17 +20,16 @@ from fontTools.varLib import set_default_weight_width_slant
 from fontTools.varLib.hvar import add_HVAR
 from fontTools.varLib.instancer import setMacOverlapFlags
 
-from ...curves.integrals import area
 from ...errors import GlyphsplineError, OutputError
 from ...outlines.masters import DesignAxis, Masters
 from ...readers import Font, Source
 from ...readers.single_fonts import axis_of
 from ...types import MadeOnDemand
-from .font_file import postscript, to_font
+from .font_file import postscript, saved, stored_names, to_font
 from .font_glyphs import decomposed, users
-from .master_deltas import Redrawn, check_steps, rounded_deltas
-from .quadratic_contours import PHANTOMS
+from .master_deltas import Redrawn, axes_of, check_steps, oriented, rounded_deltas
 from .variable_font import VariableSummary, to_variable_font
+from .variable_glyf import PHANTOMS
 
 ELIDABLE = "Regular"
 """The style that is left out of the names of others."""
@@ -72,12 +71,12 @@ def to_new_variable_font(
     default = sources[0]
     _check(default, design, redrawn)
     font = TTFont(BytesIO(to_font(default, (), "ttf", family=family)[0]), recalcTimestamp=False)
-    names = _names(default, font)
+    names = stored_names(default, font)
     given = {names[name]: name for name in redrawn}
     styles = _styles(sources, values)
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
     add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
-    drawn = MadeOnDemand(given, lambda stored: _clockwise(redrawn[given[stored]]))
+    drawn = MadeOnDemand(given, lambda stored: oriented(redrawn[given[stored]], "ttf"))
     data, summary = to_variable_font(
         opened(font, default.path), drawn, "ttf", tolerance=tolerance, with_contours=with_contours
     )
@@ -95,13 +94,6 @@ def _check(default: Source, design: DesignAxis, redrawn: Mapping[str, Redrawn]) 
             raise GlyphsplineError("the font has no such glyph", font=str(default.path), glyph=name)
         if new.masters.axes != (design,):
             raise OutputError(f"its masters are not along {design.tag} alone", font=str(default.path), glyph=name)
-
-
-def _names(source: Source, font: TTFont) -> dict[str, str]:
-    """Names of the source's glyphs to those in the font, whose order is the source's if that is a font's."""
-    if isinstance(source, Font):
-        return dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
-    return {name: name for name in source.glyph_names}
 
 
 def _styles(sources: Sequence[Source], values: Sequence[float]) -> list[str]:
@@ -148,25 +140,14 @@ def add_advances(font: TTFont, masters: Mapping[str, Masters]) -> None:
         for region, delta in zip(glyph.regions.tolist(), steps[1:, 0].tolist(), strict=True):
             deltas = [(0, 0)] * count
             deltas[1 - PHANTOMS] = tuple(delta)
-            axes = {axis.tag: tuple(own) for axis, own in zip(glyph.axes, region, strict=True) if own[1]}
+            axes = axes_of([axis.tag for axis in glyph.axes], region)
             variations[name].append(TupleVariation(axes, deltas))
     FontBuilder(font=font).setupGvar(variations)
 
 
-def _clockwise(new: Redrawn) -> Redrawn:
-    """The glyph with ink to the right of its contours in the default, as TrueType has it. No font has it otherwise."""
-    new = Redrawn(new.masters, new.contours, new.inner)
-    if sum(area(contour.cubics()[0]) for contour in new.contours) <= 0:
-        return new
-    inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)
-    return replace(new, contours=tuple(contour.reversed() for contour in new.contours), inner=inner)
-
-
 def opened(font: TTFont, path: Path) -> Font:
     """A font that is being built, as a source."""
-    file = BytesIO()
-    font.save(file, reorderTables=False)
-    return Font(path, file.getvalue(), 0, None)
+    return Font(path, saved(font), 0, None)
 
 
 def _finished(data: bytes, static: Sequence[str]) -> bytes:
@@ -175,6 +156,4 @@ def _finished(data: bytes, static: Sequence[str]) -> bytes:
     for name in static:
         font["gvar"].variations[name] = []
     add_HVAR(font)
-    file = BytesIO()
-    font.save(file, reorderTables=False)
-    return file.getvalue()
+    return saved(font)

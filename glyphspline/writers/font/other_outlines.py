@@ -21,15 +21,14 @@ from fontTools.ttLib.tables._g_l_y_f import Glyph
 from fontTools.varLib.builder import buildVarData, buildVarRegionList, buildVarStore
 from fontTools.varLib.hvar import add_HVAR
 
-from ...curves.integrals import area
 from ...errors import GlyphsplineError
 from ...outlines.masters import Masters
 from ...readers import Font
 from ...readers.source import reusing
 from ...types import MadeOnDemand
-from .font_file import HINTS, become
+from .font_file import HINTS, become, drop
 from .font_glyphs import Flavour
-from .master_deltas import Redrawn, bound_of, region_key
+from .master_deltas import Redrawn, axes_of, bound_of, oriented, region_key
 from .new_variable_font import add_advances, opened
 from .quadratic_contours import unchanged
 from .variable_font import VariableSummary, to_variable_font
@@ -90,21 +89,6 @@ def _masters(source: Font, name: str, said: set[str]) -> Masters:
         return Masters(name, axes=source.axes, regions=np.empty((0, len(source.axes), 3)), metrics=source.metrics)
 
 
-def oriented(new: Redrawn, flavour: Flavour) -> Redrawn:
-    """The glyph with ink to the right of its contours in the default, as TrueType has it, or to their left.
-
-    Quadratics are not compared with the source's, which are cubics: their bounds are none.
-    """
-    if flavour == "ttf" and new.tally is None:
-        new = Redrawn(new.masters, new.contours, new.inner)
-    total = sum(area(contour.cubics()[0]) for contour in new.contours)
-    if (total >= 0) == (flavour == "otf") or total == 0:
-        return new
-    masters = replace(new.masters, contours=[contour.reversed() for contour in new.masters.contours], repeats=None)
-    inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)
-    return replace(new, masters=masters, contours=tuple(c.reversed() for c in new.contours), inner=inner)
-
-
 def blank(source: Font, masters: Mapping[str, Masters], flavour: Flavour) -> Font:
     """The font with glyphs of the other kind that are empty, and take those of these masters."""
     font = source.tables()
@@ -115,9 +99,7 @@ def blank(source: Font, masters: Mapping[str, Masters], flavour: Flavour) -> Fon
             if not len(masters[name].regions):  # nor is read what is beyond the limits of masters
                 font["gvar"].variations[stored] = []
         add_HVAR(font)  # advances vary in gvar, which goes
-    for tag in (*HINTS, "gvar", "VARC", "VORG", "DSIG"):
-        if tag in font:
-            del font[tag]
+    drop(font, *HINTS, "gvar", "VARC", "VORG", "DSIG")
     font.flavor = font.flavorData = None
     if flavour == "ttf":
         _set_bearings(font, {stored: masters[name] for stored, name in given.items()} if "vmtx" in font else {})
@@ -141,8 +123,7 @@ def _set_bearings(font: TTFont, masters: Mapping[str, Masters]) -> None:
 
 def _become_cff2(font: TTFont, masters: Iterable[Masters]) -> None:
     """Empty char strings in place of ``glyf``, and a store with an item for each set of regions."""
-    for tag in ("glyf", "loca"):
-        del font[tag]
+    drop(font, "glyf", "loca")
     builder = FontBuilder(font=font)
     builder.isTTF = False
     builder.setupMaxp()
@@ -157,7 +138,7 @@ def _become_cff2(font: TTFont, masters: Iterable[Masters]) -> None:
     for item in items.values():
         keys = [tuple(map(tuple, region)) for region in item]
         for key in keys:
-            regions.setdefault(key, {tag: three for tag, three in zip(tags, key, strict=True) if three[1]})
+            regions.setdefault(key, axes_of(tags, key))
         numbers.append([[*regions].index(key) for key in keys])
     if not regions:
         return

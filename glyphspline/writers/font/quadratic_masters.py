@@ -49,7 +49,7 @@ def quadratic_masters(source: Font, masters: Masters, options: Options) -> Maste
     result = convert_masters(masters, options, fit=fit)
     curves = tuple(each.curve for each in result.contours)
     if (found := tallies.get(curves)) is None:
-        found = tally((0, 0), (Turning(masters), Turning(replace(masters, contours=curves, repeats=None))), False)
+        found = tally((0, 0), (Turning(masters), Turning(replace(masters, contours=curves, repeats=None))))
     return replace(result, tally=np.array(astuple(found)))
 
 

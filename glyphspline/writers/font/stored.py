@@ -12,9 +12,6 @@ from ...outlines.contour_arrays import ContourArrays, joined
 from ...outlines.outline import Outline
 from ...readers import Font, Source
 
-TABLES = ("glyf", "CFF ", "CFF2")
-"""Tables of outlines."""
-
 BATCH = 500
 """Glyphs read at once."""
 
@@ -49,7 +46,7 @@ def stored_facts(source: Source, gids: Sequence[int]) -> Stored:
     size = None
     if isinstance(source, Font):
         tables = source.tables().reader.tables
-        size = next((tables[tag].length for tag in TABLES if tag in tables), None)
+        size = next((tables[tag].length for tag in ("glyf", "CFF ", "CFF2") if tag in tables), None)
     return Stored(curves, points, int(found[0]), int(found[1]), size)
 
 

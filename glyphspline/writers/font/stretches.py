@@ -7,11 +7,10 @@ themselves: a glyph drawn anew has no kink that its source has not, at any locat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 
@@ -19,9 +18,8 @@ from ...checks.kinds import THRESHOLDS
 from ...checks.kinks import kinks_along
 from ...checks.on_axes import kinks_of
 from ...checks.turns import joint_controls, turns_of
-from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters
-from ...types import BoolArray, FloatArray, IntArray, counted
+from ...types import BoolArray, FloatArray, IntArray
 from .master_deltas import Redrawn, Tally
 
 NEAR = 1e-3
@@ -29,16 +27,6 @@ NEAR = 1e-3
 
 NOTHING_NEW = "none of its arcs can be drawn anew without a kink or more points"
 """Why a glyph keeps its outline."""
-
-
-class Plan(Protocol):
-    """A contour that is drawn anew as far as that does no harm."""
-
-    def stored(self) -> MasterContour:
-        """What is drawn."""
-
-    def retreat(self, segments: Sequence[int]) -> bool:
-        """Take the next candidates for what meets where segments of :meth:`stored` begin; False if there is none."""
 
 
 class Turning:
@@ -82,10 +70,6 @@ class Turning:
             made[c, s] = max(made.get((c, s), (0.0, 0.0)), (turn, more))
         return {joint: more for joint, (_, more) in made.items()}
 
-    def kinks(self) -> tuple[int, int]:
-        """How many joints ``check`` reports, and how many of them turn more between masters than in them."""
-        return len(self.reported), sum(more > 0 for more in self.reported.values())
-
     def not_in(self, source: Turning) -> list[tuple[int, int]]:
         """Contour and segment of the joints that do not turn so in the source, or are not reported there."""
         found, known = [], np.array([joint in source.reported for joint in source.joints], dtype=np.bool_)
@@ -100,15 +84,23 @@ class Turning:
         return found
 
 
-def settle(masters: Masters, plans: Sequence[Plan]) -> tuple[Turning, Turning]:
-    """Take other candidates until nothing turns that the source does not turn; where source and result turn."""
+def settle(
+    masters: Masters, stored: Callable[[], Sequence[MasterContour]], retreat: Callable[[int, Sequence[int]], bool]
+) -> tuple[Turning, Turning]:
+    """Take other candidates until nothing turns that the source does not turn; where source and result turn.
+
+    Args:
+        stored: gives the contours that are drawn.
+        retreat: takes the next candidates for what meets where these segments of a contour begin; False if there are
+            none.
+    """
     source = Turning(masters)
     while True:
-        stored = [plan.stored() for plan in plans]
-        found = Turning(replace(masters, contours=stored, repeats=None))
+        contours = stored()
+        found = Turning(replace(masters, contours=contours, repeats=None))
         bad = found.not_in(source)
-        segments = [[s for owner, s in bad if owner == c] + vanished(contour) for c, contour in enumerate(stored)]
-        if not any([plan.retreat(own) for plan, own in zip(plans, segments, strict=True) if own]):  # noqa: C419 (all)
+        segments = [[s for owner, s in bad if owner == c] + vanished(contour) for c, contour in enumerate(contours)]
+        if not any([retreat(c, own) for c, own in enumerate(segments) if own]):  # noqa: C419 (all)
             return source, found
 
 
@@ -172,52 +164,37 @@ def is_own(contour: MasterContour, span: IntArray, source: MasterContour, own: r
 
 
 class Segments:
-    """The plan of a contour of lines and cubics, any of whose stretches can be the source's own segments."""
+    """A contour of lines and cubics, any of whose stretches can be the source's own segments.
+
+    Where it is not known which of these a stretch replaces, the whole contour is one.
+    """
 
     def __init__(self, redrawn: Redrawn, c: int) -> None:
         self.contour, self.inner = redrawn.contours[c], redrawn.inner[c]
         self.source = redrawn.masters.contours[redrawn.numbers[c]]
-        self.spans = spans_of(self.inner)
-        self.ranges = ranges_of(self.contour, self.inner, self.source)
-        self.own = [False] * len(self.spans)
-        if self.ranges is not None:
-            pairs = zip(self.spans, self.ranges, strict=True)
-            self.own = [is_own(self.contour, span, self.source, own) for span, own in pairs]
+        self.spans, ranges = spans_of(self.inner), ranges_of(self.contour, self.inner, self.source)
+        if ranges is None:
+            self.spans, self.ranges, self.own = [np.concatenate(self.spans)], [range(len(self.source))], [False]
+        else:
+            pairs = zip(self.spans, ranges, strict=True)
+            self.ranges, self.own = ranges, [is_own(self.contour, span, self.source, own) for span, own in pairs]
 
     @property
     def is_own(self) -> bool:
         """Whether all of it stays as the font has it."""
         return all(self.own)
 
-    def excess(self) -> list[tuple[int, int]]:
-        """By how many segments each stretch that is drawn anew exceeds the source's, and its number."""
-        if self.ranges is None:
-            return [(len(self.contour) - len(self.source), 0)] * (not self.is_own)
-        pairs = enumerate(zip(self.spans, self.ranges, strict=True))
-        return [(len(span) - len(own), k) for k, (span, own) in pairs if not self.own[k]]
-
-    def keep(self, k: int) -> None:
-        """Leave a stretch as the font has it, or all of them if what they replace is not known."""
-        if self.ranges is None:
-            self.own = [True] * len(self.own)
-        else:
-            self.own[k] = True
-
     def _pieces(self) -> list[tuple[MasterContour, IntArray, bool]]:
         """The contours and segments of them that follow one another, and whether they are the source's."""
         if self.is_own:
             return [(self.source, np.arange(len(self.source)), True)]
-        pieces = []
-        for k, span in enumerate(self.spans):
-            if self.own[k]:
-                assert self.ranges is not None
-                pieces.append((self.source, np.array(self.ranges[k]) % len(self.source), True))
-            else:
-                pieces.append((self.contour, span, False))
-        return pieces
+        return [
+            (self.source, np.array(own) % len(self.source), True) if stays else (self.contour, span, False)
+            for span, own, stays in zip(self.spans, self.ranges, self.own, strict=True)
+        ]
 
     def stored(self) -> MasterContour:
-        """See :class:`Plan`."""
+        """What is drawn."""
         points, degrees = [], []
         for contour, span, _ in self._pieces():
             starts = np.cumsum(contour.degrees) - contour.degrees
@@ -231,38 +208,34 @@ class Segments:
         return np.concatenate(parts)
 
     def retreat(self, segments: Sequence[int]) -> bool:
-        """See :class:`Plan`."""
+        """Leave stretches that meet where segments of :meth:`stored` begin as the font has them; see :func:`settle`."""
         if self.is_own:
             return False
         owners = np.repeat(np.arange(len(self.own)), [len(span) for _, span, _ in self._pieces()]).tolist()
         moved = False
-        for before, after in [(owners[segment - 1], owners[segment]) for segment in segments]:
-            for k in (before, after):
-                if not self.own[k]:
-                    self.keep(k)
-                    moved = True
-                    break
+        for pair in [(owners[segment - 1], owners[segment]) for segment in segments]:
+            new = next((k for k in pair if not self.own[k]), None)
+            if new is not None:
+                self.own[new] = moved = True
         return moved
 
 
 def fewest(plans: Sequence[Segments]) -> None:
     """Leave stretches as the font has them, those that need most more segments first, until a glyph has no more."""
-    while True:
-        every = [(more, -c, -k) for c, plan in enumerate(plans) for more, k in plan.excess()]
-        total = sum(len(plan.stored()) - len(plan.source) for plan in plans)
-        if total <= 0 or not every:
+    while sum(len(plan.stored()) - len(plan.source) for plan in plans) > 0:
+        every = [
+            (len(span) - len(own), -c, -k)
+            for c, plan in enumerate(plans)
+            for k, (span, own, stays) in enumerate(zip(plan.spans, plan.ranges, plan.own, strict=True))
+            if not stays
+        ]
+        if not every:
             return
         _, c, k = max(every)
-        plans[-c].keep(-k)
+        plans[-c].own[-k] = True
 
 
-def tally(points: tuple[int, int], turning: tuple[Turning, Turning], fewest: bool) -> Tally:
-    """What a glyph's plans come to.
-
-    Raises:
-        GlyphsplineError: the glyph would have more points than its source, which ``fewest`` forbids.
-    """
-    if fewest and points[1] > points[0]:
-        raise GlyphsplineError(f"it would have {counted(points[1], 'point')}, not {points[0]}")
-    (kinks, between), (kinks_after, between_after) = (each.kinks() for each in turning)
-    return Tally(points, (kinks, kinks_after), (between, between_after))
+def tally(points: tuple[int, int], turning: tuple[Turning, Turning]) -> Tally:
+    """Points of a glyph before and after, and the kinks of where it turns, as ``check`` reports them."""
+    before, after = ([*each.reported.values()] for each in turning)
+    return Tally(points, (len(before), len(after)), (sum(m > 0 for m in before), sum(m > 0 for m in after)))

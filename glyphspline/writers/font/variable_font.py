@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from io import BytesIO
+from functools import partial
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -20,14 +21,15 @@ from fontTools.misc.psCharStrings import T2CharString
 from fontTools.ttLib import TTFont
 
 from ...errors import GlyphsplineError, OutputError
-from ...outlines.masters import MasterContour
+from ...outlines.contour_arrays import lines_and_cubics
+from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
 from ...readers.opentype.variations import executed
 from ...readers.source import reusing
-from ...types import FloatArray, IntArray
-from .font_file import replace_family
+from ...types import FloatArray, IntArray, counted
+from .font_file import drop_signature, replace_family, saved
 from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string
-from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, region_key, rounded_deltas
+from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, order_of, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variable_glyf import Quadratics
 
@@ -96,20 +98,18 @@ def to_variable_font(
     """
     if (own := flavour_of(source)) != flavour:
         raise OutputError(f"has the outlines of {own}, not of {flavour}", font=str(source.path))
-    file = BytesIO()
     glyphs: dict[str, StoredGlyph] = {}
     composites, left = [], {}
     with reusing(source.path, source.kind):
         font = source.tables()
         font.recalcBBoxes = False
-        if "DSIG" in font and getattr(font["DSIG"], "signatureRecords", None):
-            del font["DSIG"]  # a signature of the bytes as they were
+        drop_signature(font)
         if "glyf" in font:
             drop_endless(font)
         names = font.getGlyphOrder()
         gids = {name: gid for gid, name in enumerate(source.glyph_names)}
-        strings = CharStrings2(font) if flavour == "otf" else None
         quadratics = Quadratics(font) if flavour == "ttf" else None
+        write = partial(quadratics.replace, tolerance=tolerance) if quadratics else CharStrings2(font).replace
         made = set(font["VARC"].table.Coverage.glyphs) if "VARC" in font else set()
         for name, new in redrawn.items():
             if name not in gids:
@@ -127,11 +127,7 @@ def to_variable_font(
                     composites.append(name)
                 continue
             try:
-                if strings:
-                    found = strings.replace(stored, new)
-                else:
-                    assert quadratics
-                    found = quadratics.replace(stored, new, tolerance)
+                found = write(stored, new)
                 glyphs[name] = found if with_contours else replace(found, contours=(), inner=())
             except GlyphsplineError as error:
                 left[name] = error.message
@@ -141,8 +137,8 @@ def to_variable_font(
             quadratics.finish()
         if family is not None:
             replace_family(font, family)
-        font.save(file, reorderTables=False)
-    return file.getvalue(), VariableSummary(glyphs, tuple(composites), left)
+        data = saved(font)
+    return data, VariableSummary(glyphs, tuple(composites), left)
 
 
 def flavour_of(source: Font) -> Flavour:
@@ -206,12 +202,14 @@ class CharStrings2:
             plans = [Segments(redrawn, c) for c in range(len(contours))]
             if redrawn.fewest:
                 fewest(plans)
-            turning = settle(masters, plans)
+            turning = settle(masters, lambda: [plan.stored() for plan in plans], lambda c, own: plans[c].retreat(own))
             if plans and all(plan.is_own for plan in plans):
                 raise GlyphsplineError(NOTHING_NEW, glyph=name)
-            counts = [sum(map(len, each)) for each in (masters.contours, [plan.stored() for plan in plans])]
-            tallied = tally((counts[0], counts[1]), turning, redrawn.fewest)
             contours, inner = tuple(plan.stored() for plan in plans), tuple(plan.inside() for plan in plans)
+            before, after = sum(map(len, masters.contours)), sum(map(len, contours))
+            if redrawn.fewest and after > before:
+                raise GlyphsplineError(f"it would have {counted(after, 'point')}, not {before}")
+            tallied = tally((before, after), turning)
         contours = tuple(cubic(contour) for contour in contours)
         if (points := sum(len(contour.points[0]) for contour in contours)) > LONGEST:  # of a byte each at least
             raise GlyphsplineError(f"{points} points, more than fit into a char string", glyph=name)
@@ -219,8 +217,8 @@ class CharStrings2:
         for each in steps:
             check_steps(each, PARTS, name)
         varies = any(each[1:].any() for each in steps)
-        index, order = self._place(masters.regions, old) if varies else (0, [])
-        commands = drawing([each[[0, *(1 + k for k in order)]] for each in steps], contours, name)
+        index, order = self._place(masters, old) if varies else (0, [])
+        commands = drawing([each[[0, *order]] for each in steps], contours, name)
         program = commandsToProgram(
             specializeCommands(commands, generalizeFirst=False, preserveTopology=True, maxstack=maxStackLimit)
         )
@@ -240,30 +238,22 @@ class CharStrings2:
         moved = [corners @ (now - c.points).reshape(len(masters), -1) for now, c in zip(drawn, contours, strict=True)]
         far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
         bounds = [bound + each for bound, each in zip(redrawn.bounds, far, strict=False)]
-        return StoredGlyph(
-            stored, inner, max(far, default=0.0), max(bounds, default=0.0) if redrawn.bounds else None, tallied
-        )
+        return StoredGlyph(stored, inner, max(far, default=0.0), max(bounds, default=None), tallied)
 
-    def _place(self, regions: FloatArray, old: Any) -> tuple[int, list[int]]:
-        """The index of the item of the store that has just these regions, and their indices in its order."""
+    def _place(self, masters: Masters, old: Any) -> tuple[int, list[int]]:
+        """The index of the item of the store that has just their regions, and the numbers of masters in its order."""
         reader = executed(T2CharString(bytecode=old.bytecode, private=old.private, globalSubrs=old.globalSubrs))
-        known = {region_key(region): k for k, region in enumerate(regions)}
         for index in (reader.vsIndex, *range(len(self.regions))):
-            if index < len(self.regions):
-                keys = [region_key(region) for region in self.regions[index]]
-                if len(keys) == len(known) and set(keys) == known.keys():
-                    return index, [known[key] for key in keys]
-        raise GlyphsplineError(f"no item of the font's variation store has just its {len(regions)} regions")
+            if index < len(self.regions) and (order := order_of(self.regions[index], masters)) is not None:
+                return index, order
+        raise GlyphsplineError(f"no item of the font's variation store has just its {len(masters) - 1} regions")
 
 
 def cubic(contour: MasterContour) -> MasterContour:
     """The contour with lines and cubics alone: quadratics raised, exactly."""
     if not (contour.degrees == 2).any():
         return contour
-    raised = contour.cubics()
-    degrees = np.where(contour.degrees == 1, 1, 3)
-    points = [raised[:, j, : 3 if degree == 3 else 1] for j, degree in enumerate(degrees.tolist())]
-    return MasterContour(np.concatenate(points, axis=1), degrees)
+    return MasterContour(*lines_and_cubics(contour.cubics(), contour.degrees == 1))
 
 
 def drawing(steps: list[IntArray], contours: Sequence[MasterContour], name: str) -> list[tuple[str, list[Any]]]:
@@ -280,14 +270,12 @@ def drawing(steps: list[IntArray], contours: Sequence[MasterContour], name: str)
             raise GlyphsplineError(f"steps beyond {LIMIT} do not fit into a font", glyph=name)
         blended = [[blend(column) for column in point] for point in (moves.transpose(1, 2, 0) / PARTS).tolist()]
         commands.append(("rmoveto", blended[0]))
-        offset = 1
-        last = len(contour) - 1
-        for j, degree in enumerate(contour.degrees.tolist()):
-            if degree == 3:
-                commands.append(("rrcurveto", [*blended[offset], *blended[offset + 1], *blended[offset + 2]]))
-            elif j < last:  # the line back to the start is drawn by the end of the contour
-                commands.append(("rlineto", blended[offset]))
-            offset += degree
+        rest = iter(blended[1:])
+        for degree in contour.degrees.tolist():
+            own = [arg for point in islice(rest, degree) for arg in point]
+            commands.append(("rrcurveto" if degree == 3 else "rlineto", own))
+        if contour.degrees[-1] == 1:
+            commands.pop()  # the line back to the start is drawn by the end of the contour
         at = each[:, -1:] if contour.degrees[-1] == 1 else each[:, :1]
     return commands
 

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from fontTools.ttLib import TTFont
-from fontTools.ttLib.tables._g_l_y_f import (
-    Glyph,
-    flagOverlapSimple,
-)
+from fontTools.ttLib.tables._g_l_y_f import Glyph, flagOnCurve, flagOverlapSimple
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
 from fontTools.ttLib.tables.TupleVariation import TupleVariation, compileTupleVariationStore
-from fontTools.varLib.iup import iup_contour_optimize
+from fontTools.varLib.iup import iup_contour_optimize, iup_delta
 
 from ...errors import GlyphsplineError
-from ...outlines.masters import Masters
+from ...outlines.masters import Masters, quadratics
+from ...readers.pens import ContourPen
 from ...types import FloatArray
 from .font_glyphs import parts_of, simple_glyph, users
-from .master_deltas import Redrawn, StoredGlyph, check_steps, region_key
-from .quadratic_contours import PHANTOMS, Final, Own, in_quadratics, own_contours
-from .stretches import NOTHING_NEW
+from .master_deltas import Redrawn, StoredGlyph, axes_of, check_steps, numbers_of, region_key, rounded_deltas
+from .quadratic_contours import Own, in_quadratics, stored_points
+from .stretches import NEAR, NOTHING_NEW
+
+PHANTOMS = 4
+"""Points after those of the contours, which encode the advance and the bearings."""
 
 
 class Quadratics:
@@ -45,9 +46,7 @@ class Quadratics:
         masters = redrawn.masters
         if name in self._counted:
             raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
-        old = self._glyf[name]
-        known = numbers_of(masters)
-        given = self._gvar.variations(name)
+        known, given = numbers_of(masters), self._gvar.variations(name)
         keys = [region_key(self._gvar.region(variation)) for variation in given]
         for key, variation in zip(keys, given, strict=True):
             moves = any(delta not in (None, (0, 0)) for delta in variation.coordinates[:-PHANTOMS])
@@ -55,34 +54,40 @@ class Quadratics:
                 raise GlyphsplineError("its variations have a region that its masters have not", glyph=name)
         owns, shift = self.own(name, masters)
         compared, wanted = bool(redrawn.bounds), redrawn.bounds or (0.0,) * len(redrawn.contours)
+        owns = owns if compared else {}
         if redrawn.tally is None:
-            redrawn = in_quadratics(redrawn, owns if compared else {}, shift, tolerance)
-        plans = [Final(redrawn, c, owns if compared else {}, shift) for c in range(len(redrawn.contours))]
-        if compared and plans and all(plan.is_own for plan in plans):
+            redrawn = in_quadratics(redrawn, owns, shift, tolerance)
+        kept = {
+            c: owns[number]
+            for c, (number, contour) in enumerate(zip(redrawn.numbers, redrawn.contours, strict=True))
+            if number in owns and np.array_equal(masters.contours[number].points, contour.points)
+        }
+        if kept and len(kept) == len(redrawn.contours):
             raise GlyphsplineError(NOTHING_NEW, glyph=name)
-        drawn = [plan.points() for plan in plans]
+        drawn = [
+            kept[c].as_stored() if c in kept else stored_points(masters, contour, inner, shift)
+            for c, (contour, inner) in enumerate(zip(redrawn.contours, redrawn.inner, strict=True))
+        ]
         none = np.zeros((len(masters), 0, 2), dtype=np.int64)
         steps = np.concatenate([none, *[points for points, _ in drawn]], axis=1)
         check_steps(steps, 1, name)
         on = np.concatenate([np.zeros(0, dtype=bool), *[flags for _, flags in drawn]])
         ends = (np.cumsum([len(flags) for _, flags in drawn]) - 1).tolist()
-        flags = getattr(old, "flags", b"")
+        flags = getattr(self._glyf[name], "flags", b"")
         self._new[name] = simple_glyph(steps[0], on, ends, bool(len(flags) and flags[0] & flagOverlapSimple))
         tags = [axis.tag for axis in masters.axes]
         for key, region in zip(known, masters.regions.tolist(), strict=True):
             if key not in keys:
-                axes = {tag: tuple(three) for tag, three in zip(tags, region, strict=True) if three[1]}
-                given.append(TupleVariation(axes, [None] * PHANTOMS))
+                given.append(TupleVariation(axes_of(tags, region), [None] * PHANTOMS))
                 keys.append(key)
-        kept = []
+        tuples = []
         for key, variation in zip(keys, given, strict=True):
             # The phantom points stay. A second tuple of the same region moves no new points.
             k = known.pop(key, None)
             moved: list[tuple[int, int] | None] = []
-            for plan, (points, _) in zip(plans, drawn, strict=True):
-                if plan.is_own:  # points that the font leaves to be inferred stay so
-                    own = list(variation.coordinates[:-PHANTOMS][plan.own.place])
-                    moved += own or [None] * points.shape[1]
+            for c, (points, _) in enumerate(drawn):
+                if c in kept:  # points that the font leaves to be inferred stay so
+                    moved += variation.coordinates[:-PHANTOMS][kept[c].place] or [None] * points.shape[1]
                 else:
                     deltas = points[k] if k is not None else np.zeros_like(points[0])
                     pairs = [[(x, y) for x, y in each.tolist()] for each in (deltas, points[0])]
@@ -90,8 +95,8 @@ class Quadratics:
             phantoms = [delta or (0, 0) for delta in variation.coordinates[-PHANTOMS:]]
             moved += [None if delta == (0, 0) else delta for delta in phantoms]
             if any(delta is not None for delta in moved):
-                kept.append(TupleVariation(variation.axes, moved))
-        self._gvar.put(self._font.getGlyphID(name), kept)
+                tuples.append(TupleVariation(variation.axes, moved))
+        self._gvar.put(self._font.getGlyphID(name), tuples)
         far = max((now - before for now, before in zip(redrawn.bounds, wanted, strict=True)), default=0.0)
         bound = max(redrawn.bounds, default=0.0)
         return StoredGlyph(
@@ -100,17 +105,8 @@ class Quadratics:
 
     def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
         """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :func:`in_quadratics`."""
-        old, known = self._glyf[name], numbers_of(masters)
-        keyed = [(region_key(self._gvar.region(each)), each) for each in self._gvar.variations(name)]
-        tuples = [(known[key], variation) for key, variation in keyed if key in known]
-        # Rasterisers move a glyph so that its left side bearing is the font's: masters drawn at 0 begin elsewhere.
-        lefts = np.zeros(len(masters))
-        lefts[0] = getattr(old, "xMin", 0) - self._font["hmtx"][name][1]
-        for k, variation in tuples:
-            if variation.coordinates[-PHANTOMS] is not None:
-                lefts[k] += variation.coordinates[-PHANTOMS][0]
-        shift = np.asarray(masters.at_peaks @ lefts)
-        return own_contours(masters, old, tuples, shift), shift
+        record = Record(self._font, name, masters, self._gvar)
+        return own_contours(record), record.lefts
 
     def finish(self) -> None:
         """Put the new glyphs into the font: bounds, side bearings, offsets and maxima follow."""
@@ -118,29 +114,78 @@ class Quadratics:
         self._gvar.store(self._font)
 
 
-def numbers_of(masters: Masters) -> dict[Any, int]:
-    """Regions to the numbers of their masters; the default is 0."""
-    return {region_key(region): 1 + k for k, region in enumerate(masters.regions)}
+class Record:
+    """A glyph of ``glyf`` in all masters, as it is stored.
+
+    Attributes:
+        coordinates: of the default, phantoms too. on: (n,) which of them are on the curve. spans: the first point of
+            each contour and the one behind its last.
+        given: its variations. numbers: those of their masters; 0 of a region that the masters have not.
+        drawn: (K, n, 2) its points in all masters, phantoms too.
+        lefts: (K,) from where a master is drawn to where it is stored, along x: rasterisers move a glyph so that its
+            left side bearing is the font's.
+    """
+
+    def __init__(self, font: TTFont, name: str, masters: Masters, gvar: Gvar | None) -> None:
+        self.masters = masters
+        self.coordinates, control = font["glyf"]._getCoordinatesAndControls(name, font["hmtx"].metrics)
+        self._ends = control.endPts
+        self.on = np.array([bool(flag & flagOnCurve) for flag in control.flags or ()], dtype=np.bool_)
+        self.spans = list(pairwise([0, *(end + 1 for end in self._ends)])) if len(self.on) else []
+        known, self.given = numbers_of(masters), gvar.variations(name) if gvar is not None else []
+        self.numbers = [known.get(region_key(gvar.region(each)), 0) for each in self.given] if gvar is not None else []
+        self.drawn = self.in_masters(self.coordinates, [each.coordinates for each in self.given])
+        self.lefts = self.drawn[:, -PHANTOMS, 0].copy()
+
+    def in_masters(self, coordinates: Sequence[Any], deltas: Sequence[Sequence[Any]]) -> FloatArray:
+        """(K, n, 2) points of all masters, phantoms too, with other coordinates and deltas; None: to be inferred."""
+        steps = np.zeros((len(self.masters), len(coordinates), 2))
+        steps[0] = coordinates
+        for k, own in zip(self.numbers, deltas, strict=True):
+            if k:
+                steps[k] += iup_delta(own, coordinates, self._ends)
+        return np.einsum("kj,jnc->knc", self.masters.at_peaks, steps)
+
+    def outline(self, drawn: FloatArray) -> FloatArray:
+        """Points as readers see them: without phantoms, from the left side bearing on."""
+        points = drawn[:, :-PHANTOMS].copy()
+        points[:, :, 0] -= self.lefts[:, None]
+        return points
+
+
+def own_contours(record: Record) -> dict[int, Own]:
+    """The contours of a glyph, by their numbers in the masters; none that these do not have so."""
+    masters, every, points = record.masters, record.on, record.outline(record.drawn)
+    steps = rounded_deltas(masters, record.drawn[:, :-PHANTOMS], 1)
+    found, pen = dict[int, Own](), ContourPen(masters=len(masters))
+    for a, b in record.spans:
+        turned = bool(every[b - 1] and not every[a])
+        whole, degrees, implied = quadratics(points[:, a:b], every[a:b])
+        number = len(pen.stacks)
+        pen.contour(whole, degrees)
+        if len(pen.stacks) == number:
+            continue
+        read, wanted = pen.stacks[number].points, [each.points for each in masters.contours[number : number + 1]]
+        if not any(read.shape == each.shape and np.abs(read - each).max() <= NEAR for each in wanted):
+            return {}
+        order = np.roll(np.arange(a, b), int(turned))
+        known = len(pen.stacks[number]) == len(degrees)
+        implied = implied if known else np.zeros(len(pen.stacks[number]), dtype=bool)
+        found[number] = Own(steps[:, order], every[order], slice(a, b), known, implied, turned)
+    return found
 
 
 def put_glyphs(font: TTFont, new: Mapping[str, Glyph]) -> bool:
     """Put glyphs into ``glyf``: bounds, side bearings and maxima follow. Returns whether any bounds are others."""
     glyf = font["glyf"]
-    names = font.getGlyphOrder()
-    before = {}
-    for name in users(font, new):
-        glyph = glyf[name]
-        before[name] = _bounds(glyph) or (0, 0, 0, 0)
-    touched = list(before)
+    before = {name: _bounds(glyf[name]) or (0, 0, 0, 0) for name in users(font, new)}
     for name, glyph in new.items():
         glyf[name] = glyph
     metrics, heights = font["hmtx"].metrics, font["vmtx"].metrics if "vmtx" in font else {}
-    maxp = font["maxp"]
-    follows = False
-    for name in touched:
+    maxp, follows = font["maxp"], False
+    for name, (left, _, _, top) in before.items():
         glyph = glyf[name]
         glyph.recalcBounds(glyf)
-        left, _, _, top = before[name]
         if glyph.numberOfContours:
             follows |= _bounds(glyph) != before[name]
             advance, bearing = metrics[name]
@@ -155,7 +200,7 @@ def put_glyphs(font: TTFont, new: Mapping[str, Glyph]) -> bool:
         elif glyph.numberOfContours:
             maxp.maxPoints = max(maxp.maxPoints, len(glyph.coordinates))
             maxp.maxContours = max(maxp.maxContours, glyph.numberOfContours)
-    bounds = [box for box in (_bounds(glyf.glyphs[name]) for name in names) if box]
+    bounds = [box for box in map(_bounds, glyf.glyphs.values()) if box]
     if bounds and follows:
         head = font["head"]
         low, high = np.min(bounds, axis=0), np.max(bounds, axis=0)
