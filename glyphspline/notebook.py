@@ -86,7 +86,7 @@ def curve_svg(curve: Spline | Interpolation) -> str:
     from .writers.svg.document import head, number, view_box_value
     from .writers.svg.path_data import dots_data, polyline_data, polylines_data
 
-    spline = curve if isinstance(curve, Spline) else curve.spline
+    spline = _spline_of(curve)
     if spline.control_points.shape[1] > 2:
         return _space_svg(curve)
     control, marks, cubics = spline.control_points, _marks(curve), _cubics(spline)
@@ -119,6 +119,10 @@ def interpolation_html(found: Interpolation) -> str:
     return f"{curve_svg(found)}<p>{escape(repr(found))}<br>{legend}</p>"
 
 
+def _spline_of(curve: Spline | Interpolation) -> Spline:
+    return curve if isinstance(curve, Spline) else curve.spline
+
+
 def _marks(curve: Spline | Interpolation) -> dict[str, FloatArray]:
     """Points to be marked, those in front last."""
     if isinstance(curve, Spline):
@@ -141,7 +145,7 @@ def _comb_of(cubics: FloatArray) -> dict[str, FloatArray]:
 def _space_svg(curve: Spline | Interpolation) -> str:
     from .writers.figures.basics import blank, saved
 
-    spline = curve if isinstance(curve, Spline) else curve.spline
+    spline = _spline_of(curve)
     torsion = spline.control_points.shape[1] == 3
     figure = blank(9.0, 3.6, layout="constrained")
     grid = figure.add_gridspec(1 + torsion, 2)
@@ -172,7 +176,7 @@ def _between_knots(spline: Spline) -> FloatArray:
 
 def _in_space(curve: Spline | Interpolation, axes: Any, scale: float | None, *, comb: bool) -> None:
     """Draw onto axes with three dimensions; a curve in more by its principal directions."""
-    spline = curve if isinstance(curve, Spline) else curve.spline
+    spline = _spline_of(curve)
     centre = spline.control_points.mean(axis=0)
     _, _, directions = np.linalg.svd(spline.control_points - centre)
     flat = np.eye(3) if len(centre) == 3 else directions[:3].T
@@ -187,11 +191,14 @@ def _in_space(curve: Spline | Interpolation, axes: Any, scale: float | None, *, 
         teeth = np.stack([points, tips, np.full_like(tips, np.nan)], axis=1).reshape(-1, len(centre)) @ flat
         axes.plot(*teeth.T, color="tab:purple", linewidth=0.4)
     axes.plot(*(points @ flat).T, color="black", linewidth=1.2)
-    for name, marked in _marks(curve).items():
-        colour, share = MARKS[name]
-        colour = "black" if colour == "currentColor" else colour
-        axes.plot(*(marked @ flat).T, "o", color=colour, markersize=250 * share)
+    _draw_marks(axes, {name: marked @ flat for name, marked in _marks(curve).items()})
     axes.set_aspect("equal")
+
+
+def _draw_marks(axes: Any, marks: dict[str, FloatArray]) -> None:
+    for name, points in marks.items():
+        colour, share = MARKS[name]
+        axes.plot(*points.T, "o", color="black" if colour == "currentColor" else colour, markersize=250 * share)
 
 
 def _cubic_data(spline: Spline, digits: int) -> str:
@@ -235,22 +242,22 @@ def plot(
     """
     from .writers.figures.basics import outline_patch, ring
 
-    marks = _marks(thing) if isinstance(thing, Interpolation) else {}
-    drawn = thing.spline if isinstance(thing, Interpolation) else thing
-    space = isinstance(drawn, Spline) and drawn.control_points.shape[1] > 2
+    curve = thing if isinstance(thing, Spline | Interpolation) else None
+    space = curve is not None and _spline_of(curve).control_points.shape[1] > 2
     if axes is None:
         from matplotlib import pyplot
 
         axes = pyplot.figure().add_subplot(projection="3d") if space else pyplot.gca()
-    if isinstance(thing, Spline | Interpolation) and space:
-        _in_space(thing, axes, scale, comb=comb)
+    if curve is not None and space:
+        _in_space(curve, axes, scale, comb=comb)
         return axes
-    thing = drawn
-    closed, sources, polygons = True, [], []
-    if isinstance(thing, Spline):
-        closed, curves, splines = thing.closed, [_cubics(thing)], [thing]
-        em = float(np.ptp(thing.control_points, axis=0).max())
+    marks = _marks(thing) if isinstance(thing, Interpolation) else {}
+    closed, sources = True, list[FloatArray]()
+    if isinstance(thing, Spline | Interpolation):
+        spline = _spline_of(thing)
+        closed, curves, splines = spline.closed, [_cubics(spline)], [spline]
         polygons = [marks["vertices"]] if "vertices" in marks else []
+        em = float(np.ptp(spline.control_points, axis=0).max())
     else:
         glyph = as_glyph(thing)
         curves = [contour.curve.cubics() for contour in glyph.contours]
@@ -258,15 +265,14 @@ def plot(
         polygons = [contour.polygon for contour in glyph.contours]
         sources = [contour.cubics() for contour in glyph.outline.contours]
         em = glyph.outline.metrics.units_per_em
-    sides = np.ones(1) if isinstance(thing, Spline) else None  # a curve alone has no ink: it turns left or right
     patches = []
     if source:
         patches += outline_patch(sources, facecolor="none", edgecolor="tab:orange", linewidth=0.8)
     if comb:
-        if sides is None:
-            from .outlines.ink import ink_sides
+        from .outlines.ink import ink_sides
 
-            sides = ink_sides(as_glyph(thing).arrays.curves)  # type: ignore[arg-type]
+        # A curve alone has no ink: it turns left or right.
+        sides = np.ones(1) if curve is not None else ink_sides(glyph.arrays.curves)
         patches += _comb_patches(curves, sides, em, scale, closed=closed)
     patches += outline_patch(curves, **{"facecolor": "none", "edgecolor": "black", "linewidth": 1.2} | style)
     for patch in patches:
@@ -276,9 +282,7 @@ def plot(
     for spline in splines if control_polygon else ():
         points = ring(spline.control_points) if spline.closed else spline.control_points
         axes.plot(*points.T, ".--", color="tab:purple", linewidth=0.7, markersize=3)
-    for name, points in marks.items():
-        colour, share = MARKS[name]
-        axes.plot(*points.T, "o", color="black" if colour == "currentColor" else colour, markersize=250 * share)
+    _draw_marks(axes, marks)
     axes.set_aspect("equal")
     axes.autoscale_view()
     return axes

@@ -175,15 +175,11 @@ def _cut(cubics: FloatArray, places: FloatArray) -> tuple[FloatArray, IntArray]:
             cuts.setdefault(k, []).extend(real[(real > 1e-9) & (real < 1 - 1e-9)].tolist())
     if not cuts:
         return cubics, np.arange(len(cubics))
-    parent, first, last = [], [], []
-    for k in range(len(cubics)):
-        for a, b in pairwise([0.0, *sorted(cuts.get(k, ())), 1.0]):
-            if b - a > 1e-9:
-                parent.append(k)
-                first.append(a)
-                last.append(b)
-    of = np.array(parent)
-    return sections(cubics[of], np.array(first), np.array(last)), of
+    parts = [
+        (k, a, b) for k in range(len(cubics)) for a, b in pairwise([0.0, *sorted(cuts.get(k, ())), 1.0]) if b - a > 1e-9
+    ]
+    of, first, last = map(np.array, zip(*parts, strict=True))
+    return sections(cubics[of], first, last), of
 
 
 def _fitted(line: _Line, cubics: FloatArray, tolerance: float) -> tuple[FloatArray, IntArray, float, float]:

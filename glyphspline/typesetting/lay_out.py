@@ -131,9 +131,7 @@ def paragraphs(text: str) -> Sequence[tuple[int, int]]:
     """First and last (exclusive) character of each paragraph; what ends a paragraph is in none of them."""
     ends = [match.span() for match in PARAGRAPH.finditer(text)]
     if ends and ends[-1][1] == len(text):  # a file's last line ends too
-        ends[-1] = (ends[-1][0], ends[-1][0])
-        text = text[: ends[-1][0]]
-        ends.pop()
+        text = text[: ends.pop()[0]]
     starts = [0, *(stop for _, stop in ends)]
     stops = [*(start for start, _ in ends), len(text)]
     return list(zip(starts, stops, strict=True))

@@ -134,10 +134,8 @@ def _boxes(parts: Parts) -> FloatArray:
         if len(points):
             (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
             corner[:] = [(left, bottom), (right, bottom), (right, top), (left, top)]
-    n = len(parts.which)
-    placed = (
-        Motion.by(parts.origin, parts.angle).of(corners[parts.which].reshape(-1, 2), np.full(n, 4)).reshape(n, 4, 2)
-    )
+    motion, placed = Motion.by(parts.origin, parts.angle), corners[parts.which]
+    placed = motion.of(placed.reshape(-1, 2), np.full(len(placed), 4)).reshape(placed.shape)
     return np.concatenate([placed.min(axis=1), placed.max(axis=1)], axis=1)
 
 

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..outlines.contour_arrays import offsets_of
 from ..types import BoolArray, FloatArray, IntArray
 from .bidi import embedding_levels, visual_order
 from .scripts import scripts_of, upright_in_columns
@@ -94,8 +95,7 @@ class Paragraph:
         if all(shapers[0].has(character) for character in set(text)):
             return [0] * len(text)
         found, known = [0] * len(text), dict[str, int]()
-        ends = self._clusters.tolist()
-        for a, b in pairwise(ends):
+        for a, b in pairwise(self._clusters.tolist()):
             cluster = text[a:b]
             if cluster not in known:
                 whole = (k for k, shaper in enumerate(shapers) if shaper.has(cluster))
@@ -114,14 +114,11 @@ class Paragraph:
         glyphs = self._shapers[run.font].shape(codes, run, directions[run.level % 2], self._origin)
         vertical, spacing = self._setting.vertical, self._setting.letter_spacing
         if vertical and not run.upright:
-            glyphs = self._turned(glyphs)
+            # Turned clockwise, with the middle between ascender and descender of the first font on the column's centre.
+            metrics = self._shapers[0].source.metrics
+            turned = glyphs.offset[:, ::-1] * [1.0, -1.0] - [(metrics.ascender + metrics.descender) / 2, 0.0]
+            glyphs = glyphs._replace(advance=glyphs.advance[:, ::-1] * [1.0, -1.0], offset=turned)
         return glyphs.spaced(np.array([0.0, -spacing] if vertical else [spacing, 0.0])) if spacing else glyphs
-
-    def _turned(self, glyphs: Shaped) -> Shaped:
-        # Turned clockwise, with the middle between ascender and descender of the first font on the column's centre.
-        metrics = self._shapers[0].source.metrics
-        turned = glyphs.offset[:, ::-1] * [1.0, -1.0] - [(metrics.ascender + metrics.descender) / 2, 0.0]
-        return glyphs._replace(advance=glyphs.advance[:, ::-1] * [1.0, -1.0], offset=turned)
 
     def _along(self, advances: FloatArray) -> FloatArray:
         """(n,) what advances (n, 2) are along a line."""
@@ -150,15 +147,13 @@ class Paragraph:
         seen = np.concatenate([[0], last_seen])[places]
         lengths = self._ends[seen]
         if SOFT_HYPHEN in text:
-            soft = [
-                k for k, end in enumerate(seen.tolist()) if end and text[end - 1] == SOFT_HYPHEN and end < len(text)
-            ]
             hyphens: dict[Run, float] = {}
-            for k in soft:
-                run = self._run_of(int(seen[k]) - 1)._replace(start=0, stop=1)
-                if run not in hyphens:
-                    hyphens[run] = float(self._along(self._shape([self._hyphen(int(seen[k]))], run).advance).sum())
-                lengths[k] += hyphens[run]
+            for k, end in enumerate(seen.tolist()):
+                if 0 < end < len(text) and text[end - 1] == SOFT_HYPHEN:
+                    run = self._run_of(end - 1)._replace(start=0, stop=1)
+                    if run not in hyphens:
+                        hyphens[run] = float(self._along(self._shape([self._hyphen(end)], run).advance).sum())
+                    lengths[k] += hyphens[run]
         return places, seen, np.maximum.accumulate(lengths)
 
     def _fitting(self, at: int, width: float) -> tuple[Line, int]:
@@ -214,10 +209,7 @@ def clusters(text: str) -> IntArray:
     """(k + 1,) where the k extended grapheme clusters of a text begin, and its length."""
     from unicode_segmentation_rs import graphemes
 
-    found = graphemes(text, True)
-    ends = np.zeros(len(found) + 1, dtype=np.int64)
-    np.cumsum([len(cluster) for cluster in found], out=ends[1:])
-    return ends
+    return offsets_of([len(cluster) for cluster in graphemes(text, True)])
 
 
 def line_ends(text: str) -> IntArray:

@@ -15,7 +15,7 @@ from ..curves.integrals import NODES, WEIGHTS
 from ..errors import GlyphsplineError, OptionError, is_positive, require, require_choice
 from ..outlines.outline import Contour
 from ..outlines.sampling import CORNER_ANGLE
-from ..types import FloatArray, IntArray
+from ..types import FloatArray, IntArray, counted
 from .setting import Place
 
 COINCIDENT, SMOOTH = 1e-9, 1e-7
@@ -163,8 +163,8 @@ class Path:
         return cls(cubics * (diameter / 2), True, "the circle")
 
     def __repr__(self) -> str:
-        kind, count = "closed" if self.closed else "open", len(self.cubics)
-        return f"<Path: {kind}, {count} segment{'' if count == 1 else 's'}, length {self.length:.6g}>"
+        kind = "closed" if self.closed else "open"
+        return f"<Path: {kind}, {counted(len(self.cubics), 'segment')}, length {self.length:.6g}>"
 
     @property
     def length(self) -> float:
@@ -233,8 +233,7 @@ class Path:
         Raises:
             OptionError: an s that is not finite.
         """
-        points, tangents, _ = self.frame(s)
-        return points, tangents
+        return self.frame(s)[:2]
 
     def frame(self, s: ArrayLike, side: ArrayLike = 0) -> Frame:
         """Points, unit tangents and signed curvature at arc lengths s, as for :meth:`at`.

@@ -18,8 +18,6 @@ from .setting import Feature, for_buffer
 CONTEXT = 8
 """Characters before and after a run that HarfBuzz sees; it looks at five."""
 
-UNSAFE = int(hb.GlyphFlags.UNSAFE_TO_BREAK)
-
 SPACES = frozenset("\t\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000")
 """What HarfBuzz makes of the space where a font lacks it."""
 
@@ -138,7 +136,7 @@ class HarfBuzzShaper(Shaper):
             ) from error
         infos = [(info.codepoint, info.cluster, info.flags) for info in buffer.glyph_infos]
         numbers = np.array(infos, dtype=np.int64).reshape(-1, 3)
-        unsafe: BoolArray = (numbers[:, 2] & UNSAFE) != 0
+        unsafe: BoolArray = (numbers[:, 2] & int(hb.GlyphFlags.UNSAFE_TO_BREAK)) != 0
         positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(-1, 4) * self.scale
         return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2], unsafe)
 

@@ -189,7 +189,7 @@ def font_facts(work: Work) -> dict[str, Any]:
         "first": first_glyph(work),
         "defaults": {"variant": Options.variant} | choices(),
         "measures": measures(),
-        "scale": work.scale(),
+        "scale": work.scale,
         "presets": {name: choices(**values) for name, values in PRESETS.items()},
         "palette": palette(),
     }

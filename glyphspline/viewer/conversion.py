@@ -8,7 +8,7 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import chain
 from pathlib import Path
 from threading import RLock
@@ -56,7 +56,6 @@ class Work:
         self.at = lru_cache(maxsize=12)(lambda location: open_font(path, face_index, dict(location)))
         self.converted = lru_cache(maxsize=128)(self._convert)  # a line of text has that many
         self.in_all_masters = lru_cache(maxsize=16)(self._convert_masters)
-        self.scale = lru_cache(maxsize=1)(self._scale)
         self.font: Font = self.at(())
         self.em = self.font.metrics.units_per_em
 
@@ -110,7 +109,8 @@ class Work:
             notes += [] if results[-1].contours else results[-1].notes
         return text_document(placed, results).decode(), notes
 
-    def _scale(self) -> float:
+    @cached_property
+    def scale(self) -> float:
         """The font's curvature scale, from the source outlines of at most 60 glyphs."""
         names = [name for name in self.font.glyph_names if name in set(self.font.cmap.values())]
         chosen = (names or list(self.font.glyph_names))[:: max(1, len(names) // 60)]

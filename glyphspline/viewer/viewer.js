@@ -46,6 +46,8 @@
   let compared = null, steps = null, playing = null;
   let asked = 0; // how often the curve has been asked for: what was sent before the last time is out of date
 
+  const post = async (path, body) =>
+    (await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body })).json();
   /** One request of a kind at a time; of those that came in between only the last is sent. */
   const line = (path, then) => {
     let busy = false, next = null;
@@ -55,8 +57,7 @@
       const sent = asked;
       awaiting(1);
       try {
-        const answer = await fetch(path, { method: "POST", headers: { "content-type": "application/json" }, body });
-        const found = await answer.json();
+        const found = await post(path, body);
         if (!next || found.error) then(found, sent);
       } catch (error) {
         then({ error: `the viewer does not answer: ${error.message}` }, sent);
@@ -163,13 +164,14 @@
     compared = found.error || !at("compare").checked ? null : found.results;
     drawCompared();
   });
+  const failed = ({ error }) => {
+    at("about").classList.toggle("bad", Boolean(error));
+    if (error) at("about").textContent = error;
+    return error;
+  };
   const askGlyph = line("/api/glyph", (found) => {
     if (at("along").checked) return;
-    if (found.error) {
-      at("about").textContent = found.error;
-      at("about").classList.add("bad");
-      return;
-    }
+    if (failed(found)) return;
     at("step").max = String(found.steps);
     if (!steps && !wanted) at("step").value = at("step").max;
     const other = !shown || shown.glyph !== found.glyph, onlyMeasured = state.measure && shown?.result === found.result;
@@ -181,12 +183,7 @@
     if (at("compare").checked) askCompared();
   });
   const askMasters = line("/api/masters", (found) => {
-    if (!at("along").checked) return;
-    at("about").classList.toggle("bad", Boolean(found.error));
-    if (found.error) {
-      at("about").textContent = found.error;
-      return;
-    }
+    if (!at("along").checked || failed(found)) return;
     const other = along?.glyph !== found.glyph;
     along = found;
     at("stage").classList.add("along");
@@ -399,10 +396,8 @@
   });
   const download = (svg, name) => GS.download(svg, name, "image/svg+xml");
   at("save").addEventListener("click", async () => {
-    const answer = await fetch("/api/svg", { method: "POST", headers: { "content-type": "application/json" }, body: JSON.stringify(state) });
-    const found = await answer.json();
-    if (found.error) return;
-    download(found.svg, `gid-${shown.gid}.svg`);
+    const found = await post("/api/svg", JSON.stringify(state));
+    if (!found.error) download(found.svg, `gid-${shown.gid}.svg`);
   });
   for (const id of ["picture", "beside"]) at(id).addEventListener("keydown", zoom.key);
 
