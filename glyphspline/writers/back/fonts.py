@@ -17,7 +17,7 @@ from ...errors import OutputError
 from ...files import write_whole
 from ...outlines.masters import Masters
 from ...readers import Font
-from ..font.font_file import drop_signature, saved
+from ..font.font_file import drop_signature, saved, stored_names
 from ..font.variable_glyf import Gvar, placed_by_points, put_glyphs
 from .char_strings import CharStringContours
 from .glyf_contours import GlyfContours
@@ -47,7 +47,7 @@ class FontEdit:
         self.source = source
         self.font = font = source.tables()
         font.recalcBBoxes = False
-        self._names = dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
+        self._names = stored_names(source, font)
         self._new: dict[str, Glyph] = {}
         if "glyf" in font:
             self._gvar = Gvar(font) if "gvar" in font else None

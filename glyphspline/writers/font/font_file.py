@@ -432,16 +432,14 @@ def rename(font: TTFont, family: str, style: str) -> None:
         font["name"] = newTable("name")
         font["name"].names = []
     names = font["name"]
-    for name_id in (3, 7, 16, 17, 18, 20, 21, 22, 25):
+    places = {(n.platformID, n.platEncID, n.langID) for n in names.names if n.nameID in (1, 2, 4, 6)} | {(3, 1, 0x409)}
+    for name_id in (1, 2, 3, 4, 6, TRADEMARK, 16, 17, 18, 20, 21, 22, PREFIX):
         names.removeNames(nameID=name_id)
     regular = style if style in ("Regular", "Bold", "Italic", "Bold Italic") else "Regular"
     grouped = family if regular == style else f"{family} {style}"
     texts = {1: grouped, 2: regular, 3: f"{family} {style}", 4: f"{family} {style}", 6: postscript(f"{family}-{style}")}
     if grouped != family:
         texts |= {16: family, 17: style}
-    places = {(n.platformID, n.platEncID, n.langID) for n in names.names if n.nameID in (1, 2, 4, 6)} | {(3, 1, 0x409)}
-    for name_id in (1, 2, 4, 6):
-        names.removeNames(nameID=name_id)
     for platform, encoding, language in sorted(places):
         if platform == 3 or family.isascii():
             for name_id, text in texts.items():

@@ -27,7 +27,7 @@ from ...readers import Font
 from ...readers.opentype.variations import executed
 from ...readers.source import reusing
 from ...types import FloatArray, IntArray, counted
-from .font_file import drop_signature, replace_family, saved
+from .font_file import drop_signature, replace_family, saved, stored_names
 from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string
 from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, order_of, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
@@ -106,15 +106,14 @@ def to_variable_font(
         drop_signature(font)
         if "glyf" in font:
             drop_endless(font)
-        names = font.getGlyphOrder()
-        gids = {name: gid for gid, name in enumerate(source.glyph_names)}
+        names = stored_names(source, font)
         quadratics = Quadratics(font) if flavour == "ttf" else None
         write = partial(quadratics.replace, tolerance=tolerance) if quadratics else CharStrings2(font).replace
         made = set(font["VARC"].table.Coverage.glyphs) if "VARC" in font else set()
         for name, new in redrawn.items():
-            if name not in gids:
+            if name not in names:
                 raise GlyphsplineError("the font has no such glyph", font=str(source.path), glyph=name)
-            stored = names[gids[name]]
+            stored = names[name]
             if stored in made:
                 left[name] = "made of variable components (VARC)"
                 continue
@@ -161,12 +160,10 @@ def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
     font = source.tables()
     if "glyf" not in font:
         return tuple(dict.fromkeys(names))
-    gids = {name: gid for gid, name in enumerate(source.glyph_names)}
-    order = font.getGlyphOrder()
-    found: list[str] = []
+    stored, found = stored_names(source, font), list[str]()
     for name in names:
         with suppress(Exception):  # of a broken composite, which is an error when it is read
-            found += parts_of(font, order[gids[name]])
+            found += parts_of(font, stored[name])
     return tuple(dict.fromkeys(source.glyph_names[font.getGlyphID(part)] for part in found))
 
 
