@@ -15,9 +15,6 @@ from .turns import NO_HANDLE
 SLACK = np.radians(10.0)
 """Turn beyond whole quarters that needs no further maximum."""
 
-APART = np.radians(45.0)
-"""Turn between two maxima that both belong to the bend's shape: half a quarter."""
-
 STEPS = 8
 """Chords of a segment along which its turn is summed."""
 
@@ -120,7 +117,8 @@ def lumps_of(
         worst, close = 0, False
         for k in range(size if whole else size - 1):
             other = (k + 1) % size
-            if turned(cubics, peaks[k, 0], peaks[other, 0], sign, False) < APART:
+            # Between two maxima that both belong to the bend's shape it turns by half a quarter.
+            if turned(cubics, peaks[k, 0], peaks[other, 0], sign, False) < np.pi / 4:
                 lesser = k if peaks[k, 1] < peaks[other, 1] else other
                 worst = worst if close and peaks[worst, 1] <= peaks[lesser, 1] else lesser
                 close = True

@@ -226,26 +226,20 @@ def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> F
         places = new[: count + 1]
 
 
-REACH, HEIGHT = 6.0, 2.0
-"""How far a corner is examined to either side, and how far it has to stand out from the chord, in tolerances.
-
-At this reach a corner between straight sides shows from a turn of 39 degrees. Others may be rounded, if that saves
-something and stays within the tolerance; but never between lines that stay lines.
-"""
-
-
 @compiled
 def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     """Whether a corner is one at the scale of the tolerance too, and not the zigzag of a ragged outline.
 
-    The outline is examined from a few tolerances before the corner to as many after it: the corner has to stand out
-    from their chord, and its two sides have to turn by the corner angle.
+    The outline is examined from six tolerances before the corner to as many after it: the corner has to stand out from
+    their chord by two, and its two sides have to turn by the corner angle. Between straight sides it shows so from a
+    turn of 39 degrees. Others may be rounded, if that saves something and stays within the tolerance; but never between
+    lines that stay lines.
     """
     N = len(samples) - 1
     ends = np.empty((2, 2))
     for side in range(2):
         step = 1 if side else -1
-        left, i = REACH * tolerance, at
+        left, i = 6.0 * tolerance, at
         while True:
             a, b = i % N, (i + step) % N
             x, y = samples[b, 0] - samples[a, 0], samples[b, 1] - samples[a, 1]
@@ -261,4 +255,4 @@ def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     bx, by = ends[1, 0] - x, ends[1, 1] - y
     across = ax * by - ay * bx
     height = abs(across) / max(np.hypot(ax + bx, ay + by), 1e-9)
-    return abs(np.arctan2(across, ax * bx + ay * by)) >= angle and height >= HEIGHT * tolerance
+    return abs(np.arctan2(across, ax * bx + ay * by)) >= angle and height >= 2.0 * tolerance

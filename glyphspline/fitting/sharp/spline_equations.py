@@ -29,9 +29,6 @@ LARGEST_RATIO = 4.0
 BAND = 8
 """Unknowns that meet in one equation: those of four slots."""
 
-MOST_KNOTS = 4.0
-"""A knot moves at most this many times as far as its vertex in a master: chords of one may vanish."""
-
 
 class Fit(NamedTuple):
     """The search for the spline of a stretch: all that it works on, in arrays for curves of up to ``room`` spans.
@@ -132,14 +129,17 @@ def differentiate(fit: Fit) -> None:
 
 @compiled
 def knots_per_step(curve: Curve, v: int, i: int) -> float:
-    """How far knot i moves with a step of its vertex along the curve in master v, if the other masters do the same."""
+    """How far knot i moves with a step of its vertex along the curve in master v, if the other masters do the same.
+
+    It is at most four times as far as the vertex: the chords of a master may vanish.
+    """
     if len(curve.p) == 1:
         return 1.0
     p, k = curve.p[v], curve.size[0]
     last, after = i - 1 if i > 0 else k - 1, i + 1 if i + 1 < k or not curve.size[1] else 0
     own = length(p[i, 0] - p[last, 0], p[i, 1] - p[last, 1]) + length(p[after, 0] - p[i, 0], p[after, 1] - p[i, 1])
     both = curve.h[i + 1] + curve.h[i + 2]
-    return both / own if own * MOST_KNOTS > both else MOST_KNOTS
+    return both / own if own * 4.0 > both else 4.0
 
 
 @inlined

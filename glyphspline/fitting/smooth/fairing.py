@@ -19,9 +19,6 @@ from .fair_steps import move_controls, on_spline
 from .spacing import spans_after
 from .steps import Trial
 
-STRAIGHT = 0.1 * TURN
-"""Over the length of the contour, the curvature up to which a span is straight."""
-
 LIMIT, CUT = 0.85, 0.7
 """Share of the distance allowed that samples keep to at first, as they are few: with 0.9, a quarter of the contours is
 faired again instead of a sixth. Share of what a span that then fails should have had."""
@@ -64,8 +61,8 @@ def bends(
                 surplus[i, v] = max(extrema[i, v] - fewest, 0)
                 if surplus[i, v] > 0:
                     _mark(given, corners, values[:n], where[:n], trial.places[a:b], TURN / length, uneven[a:b, v])
-                for j in range(a, b):
-                    uneven[j, v] = uneven[j, v] and peaks[j, v] > STRAIGHT / length
+                for j in range(a, b):  # up to this curvature a span is straight
+                    uneven[j, v] = uneven[j, v] and peaks[j, v] > 0.1 * TURN / length
     return extrema, surplus, peaks, uneven
 
 

@@ -33,20 +33,8 @@ from .canonical_contours import TABLE, WEIGHTS, length_at, points_at
 AT_CORNER, AT_JUMP, AT_CURVATURE = 0.065, 0.03, 0.004
 """The three numbers, with something to spare at corners, where a span that just fails costs a vertex."""
 
-GROWTH, FASTEST = 0.97, 4.0
-"""Share of the ratio allowed by which chords grow, and the ratio beyond which faster growth takes more of them."""
-
-AT_CORNER_3, GROWTH_3 = 0.1, 2.5
-"""The same for variant 3."""
-
-BEND = 2.5
-"""A chord turns by no more than this, in radians, unless it is as short as the tolerance."""
-
 FEWEST, MOST = 4, 2000
 """Vertices that a contour has at least, and up to which its polygon is refined."""
-
-SHORTEST = 1e-5
-"""No span shorter than this share of the contour is divided: it would end in duplicate vertices."""
 
 
 @compiled
@@ -62,7 +50,7 @@ def first_field(
         near: distance allowed, in font units. hold: whether control points of corners are held at them.
         field: (m TABLE + 1,).
     """
-    at_corner = AT_CORNER_3 if variant == 3 else AT_CORNER
+    at_corner = 0.1 if variant == 3 else AT_CORNER
     first = np.log(factor) / (factor - 1)  # the field at a corner, for chords that begin with 1 and grow by the factor
     m = len(turns)
     K, steps = len(cubics) // m, m * TABLE
@@ -96,8 +84,8 @@ def first_field(
                     change = 2 * abs(slope) / (before + after)
                 bend = abs(kappa[k])
                 h = (near / (AT_CURVATURE * (change + bend**3) + 1e-300)) ** 0.25
-                if bend > 0:
-                    h = min(h, BEND / bend)
+                if bend > 0:  # a chord turns by no more radians than this, unless it is as short as the tolerance
+                    h = min(h, 2.5 / bend)
                 at = j * TABLE
                 longer = min(scale[at + max(k - 1, 0)], scale[at + min(k, TABLE - 1)])
                 field[at + k] = min(field[at + k], max(h, near) * longer)
@@ -123,7 +111,8 @@ def first_field(
 
 def growth_of(ratio: float, variant: int) -> float:
     """The factor by which chords grow at most, for a ratio of adjacent chords that is allowed."""
-    return GROWTH * min(ratio, GROWTH_3 / GROWTH if variant == 3 else FASTEST)
+    # With a little to spare. Beyond a ratio of 4, faster growth takes more chords; variant 3 is worse beyond 2.5.
+    return 0.97 * min(ratio, 2.5 / 0.97 if variant == 3 else 4.0)
 
 
 @compiled
@@ -357,7 +346,8 @@ def divided(
     for i in range(len(places)):
         new[count] = places[i]
         count += 1
-        for part in range(1, parts[i] if h[i] > SHORTEST * lengths[-1] else 1):
+        # A shorter span that is divided would end in duplicate vertices.
+        for part in range(1, parts[i] if h[i] > 1e-5 * lengths[-1] else 1):
             share = shares[i] if parts[i] == 2 else part / parts[i]
             distance = at[i] + share * h[i]
             lap = np.floor(distance / lengths[-1])
