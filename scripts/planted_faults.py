@@ -131,16 +131,14 @@ def with_handle(s: Segments, j: int, handle: FloatArray) -> Segments:
     return rounded([*s[:j], np.concatenate([s[j][:1], [s[j][0] + handle], s[j][2:]]), *s[j + 1 :]])
 
 
-def kink(s: Segments, j: int, unit: float, degrees: float) -> Planted | None:
-    """A handle turned at a smooth joint, by one degree more at most after its points are rounded."""
-    if len(s[j]) < 3 or abs(joint(s, j)) > 0.2 or min(map(size, joint_handles(s, j))) < 25 * unit:
+def kink(s: Segments, j: int, unit: float, degrees: float, before: Sequence[int] = (2, 3, 4)) -> Planted | None:
+    """A handle turned at a smooth joint, by one degree more at most after its points are rounded.
+
+    ``before`` are the numbers of points that the segment before may have: 2 where a line has to run into the curve.
+    """
+    if len(s[j]) < 3 or len(s[j - 1]) not in before or abs(joint(s, j)) > 0.2:
         return None
-    return turned(s, j, degrees)
-
-
-def line_into_curve(s: Segments, j: int, unit: float, degrees: float) -> Planted | None:
-    """The same where a line runs into a curve."""
-    return kink(s, j, unit, degrees) if len(s[j - 1]) == 2 else None
+    return turned(s, j, degrees) if min(map(size, joint_handles(s, j))) >= 25 * unit else None
 
 
 def beside_short(s: Segments, j: int, unit: float, degrees: float) -> Planted | None:
@@ -466,7 +464,7 @@ CUBIC = frozenset({"jump", "lump", "inflection", "handle too long", "crossed han
 TABLE: tuple[tuple[str, Planter, str], ...] = (
     *((f"kink of {n}°", partial(kink, degrees=n), "kink turn") for n in (2, 3, 5, 8, 10)),
     *((f"kink of {n}° beside a short segment", partial(beside_short, degrees=n), "kink turn") for n in (3, 5, 8)),
-    *((f"line into curve, {n}°", partial(line_into_curve, degrees=n), "kink turn") for n in (2, 3, 5)),
+    *((f"line into curve, {n}°", partial(kink, degrees=n, before=[2]), "kink turn") for n in (2, 3, 5)),
     ("jump", jump, "jump"),
     ("lump", lump, "lump"),
     ("inflection", inflection, "inflection"),

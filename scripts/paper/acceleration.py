@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -21,11 +21,8 @@ from .common import COLOURS, Run, random_polygons
 from .study import TOLERANCE
 
 Finish = Literal["iterate", "accelerate", "solve"]
-
-FINISHES: tuple[Finish, ...] = ("iterate", "accelerate", "solve")
-SHADES: dict[str, str] = dict(
-    zip(FINISHES, (COLOURS["variant 2"], COLOURS["variant 0"], COLOURS["variant 1"]), strict=True)
-)
+FINISHES: tuple[Finish, ...] = get_args(Finish)
+SHADES = {f: COLOURS[f"variant {v}"] for f, v in zip(FINISHES, (2, 0, 1), strict=True)}
 FACES = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf")
 STEP = 20.0
 REPEATS = 7
@@ -136,20 +133,14 @@ def acceleration(run: Run) -> None:
                 apart[face] = _apart(results)
         times[face] = _times(polygons, run)
     slow = {v: _any_variant(groups[n], v) for v in ((1, 3, 4) if not run.quick else (3,))}
-    run.claim(
-        "beyond-acceleration",
-        {
-            "mean passes on random polygons": passes,
-            "mean passes on contours": contours,
-            f"mean passes at {n} vertices, other variants": slow,
-            "steps taken back": backs,
-            "median and largest distance of control points from the plain limit, in mean chords": apart,
-        },
-        "measured",
-        memory=MEMORY,
-        fall=FALL,
-        step=STEP,
-    )
+    measured = {
+        "mean passes on random polygons": passes,
+        "mean passes on contours": contours,
+        f"mean passes at {n} vertices, other variants": slow,
+        "steps taken back": backs,
+        "median and largest distance of control points from the plain limit, in mean chords": apart,
+    }
+    run.claim("beyond-acceleration", measured, "measured", memory=MEMORY, fall=FALL, step=STEP)
     run.times["acceleration, us a polygon, one thread"] = times
     run.save(_picture(passes, groups[n][0]), "acceleration", svg=True)
 

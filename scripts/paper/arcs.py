@@ -34,23 +34,19 @@ def arcs(run: Run) -> None:
             failures[f"variant {v}"] += sum(not r.converged for r in results)
         ends = gs.interpolate_many(points, 2, closed=False, residual_tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS)
         natural += sum(not r.converged for r in ends)
-    run.claim(
-        "beyond-arcs",
-        {
-            "arcs": len(counts) * run.size(200, 2),
-            "mean iterations": means,
-            "not converged": failures,
-            "not converged, variant 2 with natural ends": natural,
-            **_certificate(run),
-            "three points, largest rate bound at c = 0": max(
-                _arc(p, 2).rate_bound for p in random_polygons(3, run.size(200, 4))
-            ),
-            "smallest maximum of W_1 seen, random knots": _least_peak(run),
-            "quarter circle, radius 100, largest deviation by points": circle_deviations(),
-        },
-        "proven for arcs of which every inner vertex has an interval",
-        margin=MARGIN,
-    )
+    measured = {
+        "arcs": len(counts) * run.size(200, 2),
+        "mean iterations": means,
+        "not converged": failures,
+        "not converged, variant 2 with natural ends": natural,
+        **_certificate(run),
+        "three points, largest rate bound at c = 0": max(
+            _arc(p, 2).rate_bound for p in random_polygons(3, run.size(200, 4))
+        ),
+        "smallest maximum of W_1 seen, random knots": _least_peak(run),
+        "quarter circle, radius 100, largest deviation by points": circle_deviations(),
+    }
+    run.claim("beyond-arcs", measured, "proven for arcs of which every inner vertex has an interval", margin=MARGIN)
     run.save(_picture(means), "arcs", svg=True)
 
 

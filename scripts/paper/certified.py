@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
@@ -87,8 +87,7 @@ def peak_positions(h: FloatArray) -> tuple[IntArray, FloatArray]:
     return span, np.clip((t[:, 0] - windows[rows, span]) / h[rows, span], 0.0, 1.0)
 
 
-@dataclass
-class Enclosure:
+class Enclosure(NamedTuple):
     """Interval enclosures [low, high] of a non-negative value and of its gradient by the intervals' logarithms."""
 
     low: FloatArray
@@ -147,10 +146,7 @@ def enclose(low: FloatArray, high: FloatArray, span: int, fraction: FloatArray) 
                 terms.append(_product(_ratio(low, high, share, slice(i, i + width))[0], N[i]))
             if i + 1 in N:
                 terms.append(_product(_ratio(low, high, share, slice(i + 1, i + 1 + width))[1], N[i + 1]))
-            raised[i] = terms[0] if len(terms) == 1 else Enclosure(
-                terms[0].low + terms[1].low, terms[0].high + terms[1].high,
-                terms[0].slope_low + terms[1].slope_low, terms[0].slope_high + terms[1].slope_high,
-            )  # fmt: skip
+            raised[i] = terms[0] if len(terms) == 1 else Enclosure(*(a + b for a, b in zip(*terms, strict=True)))
         N = raised
     return N[0]
 

@@ -133,9 +133,10 @@ def figures_8_and_9(run: Run) -> None:
         }
         splines = {v: [r.spline for r in results[v]] for v in VARIANTS}
         far = {f"variant {v}": {"largest": max(b), "mean of contours": float(np.mean(b))} for v, b in beyond.items()}
+        measured = {"vertices": sum(len(p) for p in polygons), "contours": len(polygons), **far}
         run.claim(
             f"{name}-overshoot",
-            {"vertices": sum(len(p) for p in polygons), "contours": len(polygons), **far},
+            measured,
             verdict(far["variant 3"]["largest"] > 1.2 * max(far[f"variant {v}"]["largest"] for v in (1, 2))),
             words="fig-8-and-9",
             source=source,

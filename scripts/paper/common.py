@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import sys
 import time
 import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -129,12 +128,6 @@ class Run:
         said = {name: text.format(**values) for name, text in WORDS[words or id].items()}
         command = f"python -m scripts.paper --only {self.step}"
         self.claims.append(Claim(id, measured=rounded(measured, digits), verdict=verdict, command=command, **said))
-
-    def write_claims(self) -> None:
-        """claims.json: sorted by nothing, in the order of the paper."""
-        content = {"paper": PAPER, "claims": [asdict(c) for c in self.claims], "times": rounded(self.times, 4)}
-        text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-        (self.out / "claims.json").write_text(text, encoding="utf-8")
 
     def save(self, figure: Figure, name: str, svg: bool = False) -> None:
         """Write a picture without date or random ids."""

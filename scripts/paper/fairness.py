@@ -21,7 +21,7 @@ from glyphspline.readers.opentype.font import open_font
 from glyphspline.types import FloatArray
 
 from .clicking import DATA, FONTS
-from .common import COLOURS, GREY, INK, Run
+from .common import COLOURS, GREY, INK, Run, verdict
 from .measures import curvature_variation, shape
 
 METHODS = ("variant 1", "variant 2", "variant 3", "SciPy chord", "SciPy centripetal", "SciPy uniform")
@@ -187,21 +187,18 @@ def quality_study(run: Run) -> None:
     by_kind = {}
     for kind, polygons in glyph_polygons(run).items():
         by_kind[kind] = [all_qualities(p, 1e-4) for p in polygons]
+        measured = {"contours": len(polygons), **summary(by_kind[kind])}
         run.claim(
             f"quality-{kind.lower()}-contours",
-            {"contours": len(polygons), **summary(by_kind[kind])},
+            measured,
             "measured",
             words="quality-contours",
             kind=kind,
             more=_judgement(by_kind[kind]),
         )
-        run.claim(
-            f"quality-{kind.lower()}-wins",
-            {m: wins(by_kind[kind], m) for m in ("variant 3", "SciPy centripetal", "SciPy uniform")},
-            "reproduced" if min(wins(by_kind[kind], "variant 3").values()) > 50 else "differs",
-            words="quality-wins",
-            kind=kind,
-        )
+        won = {m: wins(by_kind[kind], m) for m in ("variant 3", "SciPy centripetal", "SciPy uniform")}
+        agrees = verdict(min(won["variant 3"].values()) > 50)
+        run.claim(f"quality-{kind.lower()}-wins", won, agrees, words="quality-wins", kind=kind)
     graded_corners(run)
     run.save(_boxes(by_kind), "quality", svg=False)
 
@@ -224,11 +221,8 @@ def graded_corners(run: Run) -> None:
         short = float(np.hypot(*(polygon[1] - polygon[0])))
         for method, curve in curves_of(polygon, 1e-9).items():
             measured[method][str(factor)] = bulge(*curve, polygon) / short
-    run.claim(
-        "quality-graded-corner",
-        measured,
-        "reproduced" if measured["variant 3"]["4"] > 2 * measured["variant 2"]["4"] else "differs",
-    )
+    agrees = measured["variant 3"]["4"] > 2 * measured["variant 2"]["4"]
+    run.claim("quality-graded-corner", measured, verdict(agrees))
 
 
 def _square(factor: float, steps: int = 3) -> FloatArray:

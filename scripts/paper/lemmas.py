@@ -90,15 +90,12 @@ def lemma_1(run: Run) -> None:
     if not (single and grows):
         raise ArithmeticError("the example of Lemma 1 does not hold")
     floats = {name: M.astype(np.float64) for name, M in (("first", A), ("second", B), ("product", product))}
-    run.claim(
-        "lemma-1",
-        {
-            "vertices": len(A),
-            "spectral radius of each": {k: float(np.abs(np.linalg.eigvals(floats[k])).max()) for k in floats},
-            "each below 0.91 and the product above 1.5, exactly": single and grows,
-        },
-        "differs",
-    )
+    measured = {
+        "vertices": len(A),
+        "spectral radius of each": {k: float(np.abs(np.linalg.eigvals(floats[k])).max()) for k in floats},
+        "each below 0.91 and the product above 1.5, exactly": single and grows,
+    }
+    run.claim("lemma-1", measured, "differs")
 
 
 def lemma_2(run: Run) -> None:
@@ -125,28 +122,26 @@ def lemma_2(run: Run) -> None:
         wrong += int(((bad.any(axis=1) | (top < low - near) | (top > high + near)) & has).sum())
         inside += int((((low <= u[:-1]) & (u[:-1] <= high)) & has).sum())
         vertices += int(has.sum())
-    run.claim(
-        "lemma-2",
-        {"c": c, "vertices": vertices, "intervals that are wrong": wrong, "u_i inside, %": 100 * inside / vertices},
-        verdict(wrong == 0),
-        look=LOOK,
-    )
+    measured = {
+        "c": c,
+        "vertices": vertices,
+        "intervals that are wrong": wrong,
+        "u_i inside, %": 100 * inside / vertices,
+    }
+    run.claim("lemma-2", measured, verdict(wrong == 0), look=LOOK)
 
 
 def corollary_1_converges(run: Run) -> None:
     """Uniform knots and c = 0: what Corollary 1 says, and Theorem 2 does not give."""
     groups = [random_polygons(n, run.size(200, 4), SEED + 3) for n in run.groups[:: run.size(2, 1)]]
     results = [r for g in groups for r in gs.interpolate_many(g, 2, knots="uniform", residual_tolerance=TOLERANCE)]
-    run.claim(
-        "corollary-1-converges",
-        {
-            "polygons": len(results),
-            "not converged": sum(not r.converged for r in results),
-            "largest factor of a step": max(step_factors(r.residuals).max(initial=0.0) for r in results),
-            "most iterations": max(r.iterations for r in results),
-        },
-        verdict(all(r.converged for r in results)),
-    )
+    measured = {
+        "polygons": len(results),
+        "not converged": sum(not r.converged for r in results),
+        "largest factor of a step": max(step_factors(r.residuals).max(initial=0.0) for r in results),
+        "most iterations": max(r.iterations for r in results),
+    }
+    run.claim("corollary-1-converges", measured, verdict(all(r.converged for r in results)))
 
 
 def appendix_a_holds(run: Run) -> None:
@@ -160,11 +155,8 @@ def appendix_a_holds(run: Run) -> None:
         t = u[-1] * Fraction(int(rng.integers(1, 991)), 991)
         equal += appendix_a(u, t) == divided_difference(u, t)
         ends += sum(appendix_a(u, x) == divided_difference(u, x) for x in u)
-    run.claim(
-        "appendix-a",
-        {"knot vectors": count, "equal inside": equal, "equal at knots, of five each": ends},
-        verdict(equal == count and ends == 5 * count),
-    )
+    measured = {"knot vectors": count, "equal inside": equal, "equal at knots, of five each": ends}
+    run.claim("appendix-a", measured, verdict(equal == count and ends == 5 * count))
 
 
 def tie_rule(run: Run) -> None:

@@ -97,18 +97,13 @@ def pia(run: Run) -> None:
         for name, each in found.items():
             means[name][str(n)] = float(np.mean([iterations for iterations, _ in each]))
             failures[name] += sum(not converged for _, converged in each)
-    run.claim(
-        "beyond-pia-iterations",
-        {
-            "polygons a row": run.size(COUNT, 2),
-            "mean iterations": means,
-            "not converged": failures,
-            "growth": {name: series[str(n)] / series[str(run.groups[0])] for name, series in means.items()},
-        },
-        "measured",
-        tolerance=TOLERANCE,
-        max_iterations=MAX_ITERATIONS,
-    )
+    measured = {
+        "polygons a row": run.size(COUNT, 2),
+        "mean iterations": means,
+        "not converged": failures,
+        "growth": {name: series[str(n)] / series[str(run.groups[0])] for name, series in means.items()},
+    }
+    run.claim("beyond-pia-iterations", measured, "measured", tolerance=TOLERANCE, max_iterations=MAX_ITERATIONS)
     _fairness(run)
     figure_errors = _analytic(run)
     run.save(_picture(means, figure_errors), "pia", svg=True)
@@ -126,13 +121,8 @@ def _fairness(run: Run) -> None:
             q = quality(*curve_of(results[v][k]), p)
             for m in measures:
                 ratios[f"variant {v}"][m].append(q[m] / base[m])
-    run.claim(
-        "beyond-pia-fairness",
-        {name: {m: float(np.median(x)) for m, x in table.items()} for name, table in ratios.items()},
-        "measured",
-        polygons=len(polygons),
-        vertices=len(polygons[0]),
-    )
+    medians = {name: {m: float(np.median(x)) for m, x in table.items()} for name, table in ratios.items()}
+    run.claim("beyond-pia-fairness", medians, "measured", polygons=len(polygons), vertices=len(polygons[0]))
 
 
 def _analytic(run: Run) -> dict[str, list[float]]:
@@ -155,14 +145,9 @@ def _analytic(run: Run) -> dict[str, list[float]]:
         errors[f"variant {v}"] = list(r.residuals)
     spline, iterations = least_squares(q, every)
     table[f"LSPIA, {data} data"] = _row(SALSPIA, spline, iterations, true)
+    measured = {"control points": controls, **table}
     run.claim(
-        "beyond-pia-analytic",
-        {"control points": controls, **table},
-        "measured",
-        data=data,
-        controls=controls,
-        every=every,
-        tolerance=TOLERANCE,
+        "beyond-pia-analytic", measured, "measured", data=data, controls=controls, every=every, tolerance=TOLERANCE
     )
     return errors
 

@@ -105,11 +105,8 @@ def rate_at_knots(run: Run) -> None:
         even = max(even, spectral_radius(np.eye(n) - _at_knots(np.ones(n)) * G))
         B = _at_knots(np.exp(rng.normal(0, 1, n)))
         excess = max(excess, spectral_radius(np.eye(n) - B * G) - spectral_radius(np.eye(n) - B))
-    run.claim(
-        "beyond-rate-at-knots",
-        {"knot vectors of each kind": count, "greatest, uniform": even, "greatest excess over variant 3": excess},
-        "proven for t_i = u_i",
-    )
+    measured = {"knot vectors of each kind": count, "greatest, uniform": even, "greatest excess over variant 3": excess}
+    run.claim("beyond-rate-at-knots", measured, "proven for t_i = u_i")
 
 
 def _at_knots(h: FloatArray) -> FloatArray:
@@ -141,17 +138,14 @@ def family_of_limits(run: Run) -> None:
     for _ in range(count):
         for name, reach in (("variant 1", 1.0), ("Lemma 2, c = 0", half_width)):
             repelling[name] = max(repelling[name], _rate_of_random_limit(rng, reach))
-    run.claim(
-        "beyond-fixed-points",
-        {
-            "limits": len(free),
-            "of these, with a family around": sum(free),
-            "least distance of the limits of variants 2 and 4": min(gap),
-            "median distance": float(np.median(gap)),
-            "greatest ρ(I - B∘G) at a limit, uniform knots": {"limits tried": count, **repelling},
-        },
-        "proven for limits as in beyond-rate with ρ(I - B∘G) < 1",
-    )
+    measured = {
+        "limits": len(free),
+        "of these, with a family around": sum(free),
+        "least distance of the limits of variants 2 and 4": min(gap),
+        "median distance": float(np.median(gap)),
+        "greatest ρ(I - B∘G) at a limit, uniform knots": {"limits tried": count, **repelling},
+    }
+    run.claim("beyond-fixed-points", measured, "proven for limits as in beyond-rate with ρ(I - B∘G) < 1")
 
 
 def _rank(r: gs.Interpolation) -> int:
@@ -205,19 +199,17 @@ def variant_3(run: Run) -> None:
             factor = float(np.sqrt((pi @ (after**2).sum(axis=1)) / (pi @ (e**2).sum(axis=1))))
             rises, excess = rises + (factor >= 1), max(excess, factor - rate)
             e = after
+    measured = {
+        "knot vectors": count,
+        "largest asymmetry of B in the weighted norm": asymmetry,
+        "largest difference of the formula from the basis functions": formula,
+        "least eigenvalue of B": least,
+        "runs": runs,
+        "steps in which the weighted error rises": rises,
+        "largest factor of a step less ρ(I - B)": excess,
+    }
     run.claim(
-        "beyond-variant-3",
-        {
-            "knot vectors": count,
-            "largest asymmetry of B in the weighted norm": asymmetry,
-            "largest difference of the formula from the basis functions": formula,
-            "least eigenvalue of B": least,
-            "runs": runs,
-            "steps in which the weighted error rises": rises,
-            "largest factor of a step less ρ(I - B)": excess,
-        },
-        "proven for cubics, every closed knot vector of 4 or more simple knots",
-        digits=3,
+        "beyond-variant-3", measured, "proven for cubics, every closed knot vector of 4 or more simple knots", digits=3
     )
 
 

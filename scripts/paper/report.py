@@ -41,13 +41,9 @@ def render(template: str, content: dict[str, Any]) -> str:
 
     def fill(match: re.Match[str]) -> str:
         kind, _, name = match[1].partition(" ")
-        if kind == "summary":
-            return summary(claims)
-        if kind == "paper":
-            return str(content["paper"])
-        if kind == "times":
-            return show(content["times"])
-        return block(claims[name]) if name in claims else f"`{name}` was not run."
+        if kind == "claim":
+            return block(claims[name]) if name in claims else f"`{name}` was not run."
+        return {"summary": summary(claims), "paper": content["paper"], "times": show(content["times"])}[kind]
 
     return re.sub(r"\{\{(.+?)\}\}", fill, template)
 

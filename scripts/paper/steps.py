@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import time
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib import import_module
 from itertools import chain, repeat
 from multiprocessing import get_context
 
-from .common import Claim, Run, progress
+from .common import PAPER, Claim, Run, progress, rounded
 from .report import write_report
 
 STEPS = {
@@ -80,5 +80,7 @@ def _write(run: Run) -> None:
     order = list(STEPS)
     latest = {c.id: c for c in run.claims}
     run.claims = sorted(latest.values(), key=lambda c: order.index(c.command.split()[-1]))
-    run.write_claims()
+    content = {"paper": PAPER, "claims": [asdict(c) for c in run.claims], "times": rounded(run.times, 4)}
+    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
+    (run.out / "claims.json").write_text(text, encoding="utf-8")
     write_report(run.out)

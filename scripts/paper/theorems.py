@@ -25,12 +25,8 @@ def corollary_1(run: Run) -> None:
     r = gs.interpolate(np.stack([np.cos(angle), np.sin(angle)], axis=1), 2, knots="uniform")
     half_width = float(np.mean(np.diff(r.intervals, axis=1)) / 2)
     root = min(x.real for x in np.roots([0.5, -1, 0, 1 / 6]) if abs(x.imag) < 1e-12 and x.real > 0)
-    run.claim(
-        "corollary-1",
-        half_width,
-        verdict(abs(half_width - PAPER_HALF_WIDTH) < 5e-7 and abs(half_width - root) < 1e-9),
-        digits=10,
-    )
+    agrees = abs(half_width - PAPER_HALF_WIDTH) < 5e-7 and abs(half_width - root) < 1e-9
+    run.claim("corollary-1", half_width, verdict(agrees), digits=10)
 
 
 def equilateral_polygon(n: int, rng: np.random.Generator) -> FloatArray:
@@ -46,30 +42,22 @@ def theorem_1(run: Run) -> None:
     count = run.size(60, 12)
     uniform = [gs.interpolate_vertex(equilateral_polygon(12, rng), 3) for _ in range(count)]
     general = [gs.interpolate_vertex(p, 3) for p in random_polygons(12, count)]
-    even = [_uniform_vertex(p, 3) for p in random_polygons(12, count, SEED + 2)]
+    # Uniform knots, whatever the chords.
+    local = [LocalMethod(p, 1, "uniform").run([[3]], 1e-6, 99) for p in random_polygons(12, count, SEED + 2)]
+    even = [step_factors(np.array(corrections)) for _, corrections in local]
     excess = max((step_factors(r.residuals) - r.rate_bound).max(initial=-1) for r in [*uniform, *general])
     failures = sum(not r.converged for r in general)
     bound = max(r.rate_bound for r in uniform)
-    run.claim(
-        "theorem-1",
-        {"polygons": count, "not converged": failures, "largest factor less its bound": excess},
-        verdict(failures == 0 and excess < 1e-9),
-    )
-    run.claim(
-        "remark-1",
-        {
-            "bound": bound,
-            "largest factor, equal chords": max(step_factors(r.residuals).max() for r in uniform),
-            "largest factor, uniform knots": max(f.max(initial=0) for f in even),
-            "mean factor, uniform knots": float(np.mean(np.concatenate(even))),
-        },
-        verdict(abs(bound - 5 / 6) < 1e-9 and max(f.max(initial=0) for f in even) <= 5 / 6 + 1e-9),
-    )
-
-
-def _uniform_vertex(polygon: FloatArray, k: int) -> FloatArray:
-    """Factors of Algorithm 1 on uniform knots, whatever the chords."""
-    return step_factors(np.array(LocalMethod(polygon, 1, "uniform").run([[k]], 1e-6, 99)[1]))
+    measured = {"polygons": count, "not converged": failures, "largest factor less its bound": excess}
+    run.claim("theorem-1", measured, verdict(failures == 0 and excess < 1e-9))
+    largest = max(f.max(initial=0) for f in even)
+    factors = {
+        "bound": bound,
+        "largest factor, equal chords": max(step_factors(r.residuals).max() for r in uniform),
+        "largest factor, uniform knots": largest,
+        "mean factor, uniform knots": float(np.mean(np.concatenate(even))),
+    }
+    run.claim("remark-1", factors, verdict(abs(bound - 5 / 6) < 1e-9 and largest <= 5 / 6 + 1e-9))
 
 
 def step_factors(residuals: FloatArray) -> FloatArray:
@@ -84,11 +72,12 @@ def remark_2(run: Run) -> None:
     results = [gs.interpolate_vertex(p, 0, whole_curve=True, max_iterations=200) for p in polygons]
     failed = [k for k, r in enumerate(results) if not r.converged]
     confined = [gs.interpolate_vertex(polygons[k], 0, max_iterations=200).converged for k in failed]
-    run.claim(
-        "remark-2",
-        {"polygons": len(polygons), "not converged": len(failed), "of these, converged within a span": sum(confined)},
-        verdict(len(failed) > 0 and all(confined)),
-    )
+    measured = {
+        "polygons": len(polygons),
+        "not converged": len(failed),
+        "of these, converged within a span": sum(confined),
+    }
+    run.claim("remark-2", measured, verdict(len(failed) > 0 and all(confined)))
     if failed:
         run.save(_picture_of_failure(polygons[failed[0]]), "remark-2", svg=True)
 
@@ -122,20 +111,17 @@ def theorem_2(run: Run) -> None:
     mean = np.array([(r.residuals[-1] / r.residuals[0]) ** (1 / max(r.iterations, 1)) for r in results])
     bound = np.array([r.rate_bound for r in results])
     certified = bound < 1 - 1e-9
-    run.claim(
-        "theorem-2",
-        {
-            "c": MARGIN,
-            "polygons": len(results),
-            "certified beforehand, %": 100 * certified.mean(),
-            "steps above the bound": int((worst > bound + 1e-9).sum()),
-            "median bound": np.median(bound),
-            "median of the worst factor": np.median(worst),
-            "median of the mean factor": np.median(mean),
-            "not converged": sum(not r.converged for r in results),
-        },
-        verdict(bool((worst <= bound + 1e-9).all()) and all(r.converged for r in results)),
-    )
+    measured = {
+        "c": MARGIN,
+        "polygons": len(results),
+        "certified beforehand, %": 100 * certified.mean(),
+        "steps above the bound": int((worst > bound + 1e-9).sum()),
+        "median bound": np.median(bound),
+        "median of the worst factor": np.median(worst),
+        "median of the mean factor": np.median(mean),
+        "not converged": sum(not r.converged for r in results),
+    }
+    run.claim("theorem-2", measured, verdict(bool((worst <= bound + 1e-9).all()) and all(r.converged for r in results)))
     run.save(_picture_of_rates(bound, worst, mean), "theorem-2", svg=not run.quick)
 
 
@@ -158,11 +144,8 @@ def convergence(run: Run) -> None:
     """Observed factors beside the proofs."""
     polygons = [p for n in run.groups for p in random_polygons(n, run.size(50, 3))]
     run.claim("beyond-margin-zero", _factors(polygons, 2, 0.0), HYPOTHESIS)
-    run.claim(
-        "beyond-algorithm-3",
-        {"c = 0": _factors(polygons, 4, 0.0), f"c = {MARGIN}": _factors(polygons, 4, MARGIN)},
-        HYPOTHESIS,
-    )
+    measured = {"c = 0": _factors(polygons, 4, 0.0), f"c = {MARGIN}": _factors(polygons, 4, MARGIN)}
+    run.claim("beyond-algorithm-3", measured, HYPOTHESIS)
 
 
 def _factors(polygons: list[np.ndarray], variant: int, margin: float) -> dict[str, float]:
@@ -221,14 +204,11 @@ def remark_3(run: Run) -> None:
             iterations[rule][str(sigma)] = float(np.mean(done)) if done else float("nan")
         share[str(sigma)] = 100 * sum(r.fallbacks for r in results) / (count * VERTICES)
     random = {r: {k: v for k, v in iterations[r].items() if v == v} for r in RULES}
-    run.claim(
-        "beyond-remark-3",
-        {
-            "polygons a row": count,
-            "vertices without an interval, %": share,
-            "failures": failures,
-            "mean iterations of those that converge": random,
-        },
-        "differs" if failures["Remark 3"][max(failures["Remark 3"], key=float)] > 0 else "reproduced",
-        vertices=VERTICES,
-    )
+    measured = {
+        "polygons a row": count,
+        "vertices without an interval, %": share,
+        "failures": failures,
+        "mean iterations of those that converge": random,
+    }
+    agrees = failures["Remark 3"][max(failures["Remark 3"], key=float)] == 0
+    run.claim("beyond-remark-3", measured, verdict(agrees), vertices=VERTICES)
