@@ -14,9 +14,10 @@ from ..fields import options_of
 from ..files import make_place
 from . import arguments as opt
 from .config import CHECK, names_of, settings
-from .groups import Shown, collected, grouped, only
+from .groups import collected, grouped, only, without
 from .messages import STDOUT, progress, put, say, stop
 from .running import chosen, say_face
+from .tables import plain
 
 if TYPE_CHECKING:
     from ..readers import Source
@@ -41,7 +42,7 @@ def check(
     from ..runs.font_search import find_fonts
     from ..runs.jobs.check import Face, check_fonts, worst_first
     from ..writers.settings import FigureKind
-    from .findings import as_csv, as_json, as_markdown, sentences, table
+    from .findings import NUMBERS, as_csv, as_json, as_markdown, columns, sentences
 
     texts = (report.csv, report.ghmarkdown, report.html)
     piped = texts.count(STDOUT) + run.as_json
@@ -107,7 +108,7 @@ def check(
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:
-        put(STDOUT, table(shown[: report.rows], len(faces) > 1))
+        put(STDOUT, plain(*columns(shown[: report.rows], len(faces) > 1), numbers=NUMBERS))
     if not run.quiet:
         for line in sentences(faces, len(shown), report.rows, level):
             say(line)
@@ -151,7 +152,7 @@ def project_settings() -> tuple[Asked, opt.Subset, opt.Instance]:
     groups: list[Any] = [opt.CheckOptions, opt.ReportOptions, opt.Subset, opt.Instance, opt.RunOptions]
     named = ((one.flags, one.name) for group in groups for one in options_of(group))
     given = settings(None, names_of(named), CHECK)
-    options, report, subset, instance, _ = (collected(group(), Shown(), given) for group in groups)
+    options, report, subset, instance, _ = (collected(group(), without(), given) for group in groups)
     return asked_of(options, report), subset, instance
 
 

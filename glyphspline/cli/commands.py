@@ -26,16 +26,7 @@ from .diff_command import diff
 from .groups import BareOptions, grouped, only, place, without
 from .mend_command import mend
 from .messages import RULE, UNDONE, listen, print_json, printable, progress, say, stop, watch_interruption
-from .running import (
-    Conversion,
-    check_masters,
-    chosen,
-    convert_fonts,
-    convert_masters,
-    run_face,
-    say_face,
-    workplace,
-)
+from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, run_face, say_face, workplace
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
 
@@ -247,11 +238,7 @@ def atlas(
 
 
 app.command()(check)
-
-
 app.command()(diff)
-
-
 app.command(cls=BareOptions)(mend)
 
 
@@ -261,8 +248,7 @@ def view(
     font: opt.FontFile,
     instance: Annotated[opt.Instance, only("face_index")] = opt.FIRST,
     port: Annotated[
-        int,
-        About("Listen on this port; 0 takes any that is free.", more={"min": 0, "max": 65535, "parser": None}),
+        int, About("Listen on this port; 0 takes any that is free.", more={"min": 0, "max": 65535, "parser": None})
     ] = 0,
     browser: Annotated[bool, About("Open the page in a browser.", flags=("--browser/--no-browser",))] = True,
 ) -> None:

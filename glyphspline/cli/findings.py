@@ -15,7 +15,6 @@ from ..checks.finding import Finding, place_on_axes
 from ..checks.kinds import KINDS, Level, Thresholds
 from ..types import counted, shortened
 from .messages import printable
-from .tables import plain
 
 if TYPE_CHECKING:
     from ..runs.jobs.check import Face
@@ -48,11 +47,6 @@ def columns(found: Sequence[tuple[Face, Finding]], several: bool) -> tuple[list[
         for face, finding in found
     ]
     return headings, rows
-
-
-def table(found: Sequence[tuple[Face, Finding]], several: bool) -> str:
-    """Findings, one a line."""
-    return plain(*columns(found, several), numbers=NUMBERS)
 
 
 def counts_words(counts: Mapping[str, int], level: Level | None = None) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, Signature, signature
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, TypeVar, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeAlias, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import typer
 from typer.core import TyperCommand
@@ -41,25 +41,18 @@ class BareOptions(TyperCommand):
         return super().parse_args(ctx, filled)
 
 
-class Shown(NamedTuple):
-    """Fields of a dataclass that are options of a command: those with these names, or all others."""
-
-    names: frozenset[str] = frozenset()
-    listed: bool = False
-
-    def has(self, name: str) -> bool:
-        """Whether the field of this name is an option."""
-        return (name in self.names) == self.listed
+Shown: TypeAlias = Callable[[str], bool]
+"""Whether the field of a dataclass with this name is an option of a command."""
 
 
 def only(*names: str) -> Shown:
     """These fields are options of the command."""
-    return Shown(frozenset(names), True)
+    return lambda name: name in names
 
 
 def without(*names: str) -> Shown:
     """All fields but these are options of the command."""
-    return Shown(frozenset(names))
+    return lambda name: name not in names
 
 
 @dataclass(frozen=True)
@@ -90,7 +83,7 @@ def grouped(function: Callable[..., bool | None]) -> Callable[..., None]:
         kind, *extras = get_args(hint) if get_origin(hint) is Annotated else (hint,)
         extra = extras[0] if extras else None
         if isinstance(kind, type) and is_dataclass(kind):
-            groups[name] = kind() if default is Parameter.empty else default, extra or Shown()
+            groups[name] = kind() if default is Parameter.empty else default, extra or without()
             flat += _expanded(*groups[name])
         elif isinstance(extra, About):
             flat.append(_option(described(name, kind, extra), default))
@@ -126,7 +119,7 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     known = {one.name: one for one in options_of(kind)}
     usual = kind()
     found = {one.name: value for one in fields(kind) if (value := getattr(base, one.name)) != getattr(usual, one.name)}
-    for name in (one.name for one in fields(kind) if shown.has(one.name)):
+    for name in (one.name for one in fields(kind) if shown(one.name)):
         if is_dataclass(value := getattr(base, name)):
             found[name] = collected(value, shown, given)
         elif name in known and name in given:
@@ -158,13 +151,13 @@ def for_fonts(given: Mapping[str, Any]) -> dict[str, Any]:
 def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:
     """The options of a dataclass and of those in it, as parameters for typer."""
     if isinstance(base, Options):
-        yield from _expanded(PresetOption(), Shown())
+        yield from _expanded(PresetOption(), without())
     known = {one.name: one for one in options_of(base)}
     for one in fields(base):
         value = getattr(base, one.name)
-        if shown.has(one.name) and is_dataclass(value):
+        if shown(one.name) and is_dataclass(value):
             yield from _expanded(value, shown)
-        elif shown.has(one.name) and one.name in known:
+        elif shown(one.name) and one.name in known:
             yield _option(known[one.name], value)
 
 

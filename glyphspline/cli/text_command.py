@@ -88,11 +88,7 @@ def text(
         ), executor)  # fmt: skip
     for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         put(file, drawing)
-    remarks = [
-        *missing(layout),
-        *pulled_apart(layout),
-        *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note),
-    ]
+    remarks = [*remarks_on(layout), *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note)]
     for line in () if run.quiet else shortened(remarks, SHOWN, "and {} remarks more"):
         say(line)
     return bool(layout.missing or not drawn.complete)
@@ -234,15 +230,11 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
     return value * em if unit else value
 
 
-def missing(layout: Layout) -> Iterator[str]:
-    """The remark on characters that no font has."""
+def remarks_on(layout: Layout) -> Iterator[str]:
+    """Characters that no font has, and scripts whose letters join, if space is added between letters."""
     if layout.missing:
         named = [f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]]
         yield f"no glyph for {listed(named, len(layout.missing))}: .notdef stands there"
-
-
-def pulled_apart(layout: Layout) -> Iterator[str]:
-    """The remark on scripts whose letters join, if space is added between letters."""
     if layout.letter_spacing:
         from fontTools.unicodedata import script_name
 

@@ -9,7 +9,6 @@ the strands cross a small circle around the end; chords that cross inside these 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -89,16 +88,13 @@ def _crosses(
     # touch makes of a direction.
     tied = 1e-8 if last else 5e-6 * largest / radius
     along = other.way(b, b_end) >= 0
-    first, second = (
-        _exit(one, x, other, y, forward, forward == along, small, tied)
-        for x, y, forward in ((a, b, False), (a_end, b_end, True))
-    )
-    if first.left is None or second.left is None:
+    begin, its_begin, left = _exit(one, a, other, b, False, not along, small, tied)
+    end, its_end, left_at_end = _exit(one, a_end, other, b_end, True, along, small, tied)
+    if left is None or left_at_end is None:
         return None
-    inside = one.between(known[:, 0], first.own, second.own)
-    low, high = (first, second) if along else (second, first)
-    inside &= other.between(known[:, 1], low.other, high.other)
-    return bool((inside.sum() + (first.left != second.left)) % 2)
+    inside = one.between(known[:, 0], begin, end)
+    inside &= other.between(known[:, 1], *((its_begin, its_end) if along else (its_end, its_begin)))
+    return bool((inside.sum() + (left != left_at_end)) % 2)
 
 
 class _Strand:
@@ -184,16 +180,6 @@ class _Contact:
     position: float
     beside: list[float]
 
-    def is_beside(self, positions: list[float], total: float, radius: float) -> bool:
-        """Whether one of some positions is near one of the last ones; ``total`` is the length of the contour."""
-        for x in positions:
-            # Ends of chords at the end of a contact that the next pair of chords may hang on.
-            for y in self.beside[-8:]:
-                away = abs(x - y) % total
-                if min(away, total - away) <= radius:
-                    return True
-        return False
-
 
 def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
     """Pairs of chords that hang together; see :func:`all_crossings`."""
@@ -210,7 +196,9 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     ):
         still = [contact for contact in still if s - contact.position <= radius]
         for contact in reversed(still):
-            if contact.is_beside(beside, other.total, radius):
+            # From the last ends of chords of a contact that the next pair of chords may hang on.
+            away = (abs(x - y) % other.total for x in beside for y in contact.beside[-8:])
+            if any(min(gap, other.total - gap) <= radius for gap in away):
                 if a_end > contact.end[0]:
                     contact.end, contact.position = (a_end, b_end), s_end
                 contact.beside += beside
@@ -227,26 +215,18 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
     return found
 
 
-class _Exit(NamedTuple):
-    """Where the strands of a contact leave the circle around one of its ends.
-
-    Attributes:
-        own, other: places of both contours. left: whether the second one is to the left of the first one, as this runs;
-            None if they leave together.
-    """
-
-    own: float
-    other: float
-    left: bool | None
-
-
 def _exit(
     one: _Strand, a: float, other: _Strand, b: float, forward: bool, other_forward: bool, radius: float, tied: float
-) -> _Exit:
-    """Leave a contact from places a and b, on the first contour and on the other one forward or backward."""
+) -> tuple[float, float, bool | None]:
+    """Where strands leave the circle around an end of a contact, places a and b, forward or backward.
+
+    Returns:
+        The places of both contours; whether the second one is to the left of the first one, as this runs, or None if
+        they leave together.
+    """
     (ahead, own), (back, behind) = (leaving(one.cubics, a, a, way, radius, one.cubics) for way in (True, False))
     leaves, its = leaving(other.cubics, a, b, other_forward, radius, one.cubics)
     whole = 2 * np.pi
     ties = any(abs((leaves - x + np.pi) % whole - np.pi) <= tied for x in (ahead, back))
     left = None if ties else bool((leaves - ahead) % whole < (back - ahead) % whole)
-    return _Exit(own if forward else behind, its, left)
+    return own if forward else behind, its, left

@@ -12,9 +12,7 @@ REACH = 24
 
 
 @compiled
-def cheapest_pairs(
-    costs: FloatArray, one: FloatArray, other: FloatArray, starts: IntArray, stretch: float
-) -> tuple[float, IntArray]:
+def cheapest_pairs(costs: FloatArray, one: FloatArray, other: FloatArray, starts: IntArray) -> tuple[float, IntArray]:
     """The cheapest cyclic alignment that has one of the pairs ``starts``.
 
     Args:
@@ -22,7 +20,6 @@ def cheapest_pairs(
         one, other: (2n, 4) and (2m, 4) of the landmarks in two laps: the weight, which is the cost of having no
             partner, the length up to it as a part of the whole, and the direction before and after it, unwrapped.
         starts: (k, 2) pairs.
-        stretch: the cost of two arcs between neighbouring pairs whose shares of the lengths differ by 1.
 
     Returns:
         The cost, infinite if there is none, and (p, 2) indices of the pairs, ascending in the first.
@@ -52,9 +49,9 @@ def cheapest_pairs(
                         if before < np.inf:
                             shares = (a[i, 1] - a[i - di, 1]) - (b[j, 1] - b[j - dj, 1])
                             turn = ((a[i, 2] - a[i - di, 3]) - (b[j, 2] - b[j - dj, 3])) / np.pi
-                            # Cost of two arcs between neighbouring pairs whose turns differ by half a circle; it counts
-                            # by its square.
-                            cost = before + left_a + left_b + stretch * abs(shares) + 0.5 * turn * turn
+                            # Two arcs between neighbouring pairs cost 1 if one is longer by the length of the whole
+                            # contour, and 0.5 if their turns differ by half a circle; this counts by its square.
+                            cost = before + left_a + left_b + abs(shares) + 0.5 * turn * turn
                             if cost < best:
                                 best, at = cost, di * (REACH + 1) + dj
                         left_b += b[j - dj, 0]

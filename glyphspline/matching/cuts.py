@@ -64,8 +64,7 @@ def _strong_pairs(one: Landmarks, other: Landmarks, costs: FloatArray) -> tuple[
     bars = one.weights[rows, None] + other.weights[columns]
     own = costs[np.ix_(rows, columns)]
     allowed = np.where(own < bars, own, np.inf)
-    # Cost of a stretch between two pairs that is longer by the length of the whole contour.
-    cost, pairs = cheapest_pairs(allowed, one.table(rows), other.table(columns), _starts(allowed, bars), 1.0)
+    cost, pairs = cheapest_pairs(allowed, one.table(rows), other.table(columns), _starts(allowed, bars))
     if not cost < np.inf:
         return np.array([np.unravel_index(int(costs.argmin()), costs.shape)]), 0.0
     return np.stack([rows[pairs[:, 0]], columns[pairs[:, 1]]], axis=1), cost / (len(rows) + len(columns))

@@ -80,7 +80,11 @@ def _matched(
         except GlyphsplineError as error:
             place = " ".join([f"{tag}={value:g}" for tag, value in location.items()])
             raise GlyphsplineError(f"unlike the master at {place}: {error.message}", contour=error.contour) from None
-    return [_together(own) for own in parts], scales
+    together = []
+    for own in parts:  # a segment that is a line in all masters is one
+        lines = np.all([contour.degrees == 1 for contour in own], axis=0)
+        together.append(MasterContour(*lines_and_cubics(np.stack([contour.cubics() for contour in own]), lines)))
+    return together, scales
 
 
 def _paired(one: Sequence[Landmarks], other: Sequence[Landmarks]) -> list[int]:
@@ -154,12 +158,6 @@ def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contou
             contour=index,
         )
     return [*(cut(contour, u) for contour in parts), cut(other.contour, v)]
-
-
-def _together(parts: Sequence[Contour]) -> MasterContour:
-    """One contour in all masters, with the same segments as lines."""
-    lines = np.all([contour.degrees == 1 for contour in parts], axis=0)
-    return MasterContour(*lines_and_cubics(np.stack([contour.cubics() for contour in parts]), lines))
 
 
 def _regions(locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis]) -> tuple[FloatArray, list[int]]:

@@ -41,7 +41,9 @@ def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
     contours, kept = _distinct(given, cubics)
     owner = np.repeat(np.arange(len(outlines)), np.diff(glyphs))[kept]
     turned = _reversed(contours, _backward(contours, areas[kept], sides[kept]))
-    found = _rotated(turned, _first_joints(turned))
+    firsts = turned.offsets[:-1] + _first_joints(turned)
+    points = turned.points[_rolled(turned.starts, offsets_of(turned.degrees)[firsts])]
+    found = turned._replace(points=points, degrees=turned.degrees[_rolled(turned.offsets, firsts)])
     cubics = all_cubics(found)
     lowest = [lower_left(cubics[first:last])[1:] for first, last in pairwise(found.offsets.tolist())]
     lengths, low, left = np.diff(found.offsets), *np.array(lowest).reshape(-1, 2).T
@@ -123,13 +125,6 @@ def _sequence(contour: ContourArrays, s: int) -> tuple[list[list[float]], list[i
     """What a single contour is compared by, from joint s on: x + y and x of all points, and then the degrees."""
     x, y = np.roll(contour.points, -int(contour.degrees[:s].sum()), axis=0).T
     return np.stack([x + y, x], axis=1).tolist(), np.roll(contour.degrees, -s).tolist()
-
-
-def _rotated(contours: ContourArrays, joints: IntArray) -> ContourArrays:
-    """Contours from these joints (C,) on."""
-    firsts = contours.offsets[:-1] + joints
-    points = contours.points[_rolled(contours.starts, offsets_of(contours.degrees)[firsts])]
-    return contours._replace(points=points, degrees=contours.degrees[_rolled(contours.offsets, firsts)])
 
 
 def _rolled(ends: IntArray, firsts: IntArray) -> IntArray:

@@ -133,28 +133,16 @@ def file_facts(path: str | Path, face_index: int | None = None, location: Locati
         faces = [*open_faces(_place(path), face_index, location)]
     else:
         faces = [open_source(path, face_index or 0, location)]
-    return {
-        "file": str(path),
-        "format": faces[0].format,
-        "faces": faces[0].num_faces,
-        "fonts": [face_facts(face) for face in faces],
-    }
-
-
-def face_facts(face: Source) -> dict[str, Any]:
-    """The facts of one face: names, metrics, axes, instances, and the numbers of glyphs and characters."""
-    glyphs, characters = face.counts()
-    return {
-        "face_index": face.face_index,
-        "family": face.family,
-        "style": face.style,
-        **asdict(face.metrics),
-        "axes": [axis_facts(axis) for axis in face.axes],
-        "instances": {name: dict(place) for name, place in face.instances.items()},
-        "location": dict(face.location),
-        "glyphs": glyphs,
-        "characters": characters,
-    }
+    fonts = []
+    for face in faces:
+        glyphs, characters = face.counts()
+        fonts.append({
+            "face_index": face.face_index, "family": face.family, "style": face.style, **asdict(face.metrics),
+            "axes": [axis_facts(axis) for axis in face.axes],
+            "instances": {name: dict(place) for name, place in face.instances.items()},
+            "location": dict(face.location), "glyphs": glyphs, "characters": characters,
+        })  # fmt: skip
+    return {"file": str(path), "format": faces[0].format, "faces": faces[0].num_faces, "fonts": fonts}
 
 
 def axis_facts(axis: DesignAxis) -> dict[str, Any]:

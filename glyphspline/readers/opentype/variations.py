@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -113,7 +112,7 @@ class Variations:
         coordinates, control = glyf._getCoordinatesAndControls(name, self._tables["hmtx"].metrics)
         points = np.array(coordinates[:-2], dtype=np.float64)  # without the phantom points of vertical metrics
         deltas: dict[Region, FloatArray] = {}
-        for variation in self._gvar.get(name, ()):
+        for variation in self._tables["gvar"].variations.get(name, ()) if "gvar" in self._tables else ():
             given = variation.coordinates
             if None in given:
                 given = iup_delta(given, coordinates, control.endPts)
@@ -126,10 +125,6 @@ class Variations:
             raise GlyphsplineError("cubic curves in a glyf table, which are not supported")
         on = np.array([bool(flag & flagOnCurve) for flag in control.flags], dtype=bool)
         return _Parts(points, deltas, on, tuple(end + 1 for end in control.endPts))
-
-    @cached_property
-    def _gvar(self) -> Any:
-        return self._tables["gvar"].variations if "gvar" in self._tables else {}
 
     def _composite(self, own: _Parts, components: Sequence[Any], nesting: Sequence[str | None]) -> _Parts:
         """The components of a glyph in place; the points of ``own`` are their offsets, and the glyph's metrics."""
