@@ -219,7 +219,7 @@ def measured(task: Task) -> Found:
     metrics = gs.FontMetrics(em, 0.8 * em, -0.2 * em)
     outlines = [gs.Outline(task.name, 0, (), 0.0, contours, metrics) for contours, _ in unlike]
     try:
-        masters = match_masters(outlines, [{"wght": value} for value in values], [axis])
+        masters = match_masters(outlines, values, axis)
         shape, corner, slip = compared(originals, unlike[0][1], masters)
         return Found(task, shape / em, corner / em, slip / em, "")
     except gs.GlyphsplineError as failure:

@@ -92,12 +92,8 @@ def check(
     if report.html is not None:
         from ..report.findings_page import CheckedFont, findings_page
 
-        put(
-            report.html,
-            findings_page(
-                [CheckedFont(each.font, each.source, each.findings, each.scores) for each in faces if each.source]
-            ),
-        )
+        drawn = [CheckedFont(each.font, each.source, each.findings, each.scores) for each in faces if each.source]
+        put(report.html, findings_page(drawn))
     if report.plot is not None and faces[0].kinks is not None:
         from ..readers import open_source
         from ..writers.figures.axis_pages import turns_figure

@@ -124,10 +124,8 @@ class Landmarks:
 
     def _direction(self, side: int) -> FloatArray:
         """Directions before or after each landmark, of chords: a short handle, off by a unit, points anywhere."""
-        here, ends = (
-            self.rows(self.places)[:, 0],
-            np.where(side < 0, np.ceil(self.places), np.floor(self.places)) + side,
-        )
+        here = self.rows(self.places)[:, 0]
+        ends = np.where(side < 0, np.ceil(self.places), np.floor(self.places)) + side
         along = here + side * np.minimum(CHORD * self.em, np.abs(self.rows(ends)[:, 0] - here))
         step = side * (self.contour.at(np.interp(along, self._rows[:, 0], self._at)) - self.points)
         direction = self.rows(self.places, before=side < 0)[:, 1]

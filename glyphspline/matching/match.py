@@ -7,13 +7,13 @@ master keeps its outline.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from ..curves.integrals import area
-from ..errors import GlyphsplineError, OptionError
+from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import lines_and_cubics
 from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, Outline
@@ -29,16 +29,12 @@ FARTHEST = 0.95
 """Largest distance of the features of two contours that are a pair, in the outlines' sizes."""
 
 
-def match_masters(
-    outlines: Sequence[Outline], locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis]
-) -> Masters:
-    """Outlines of one glyph, whose points need not correspond, as masters of a design space.
+def match_masters(outlines: Sequence[Outline], values: Sequence[float], axis: DesignAxis) -> Masters:
+    """Outlines of one glyph, whose points need not correspond, as masters along an axis.
 
     Args:
         outlines: K of them, of at least two; where the units per em differ, all are scaled to those of the default.
-        locations: of the outlines, axis tag to user-space value; axes that are not given are at their default.
-        axes: of the design space. The masters are at the default and, along one axis, at any places that include its
-            ends; along several axes, at ends of single axes.
+        values: of the outlines on the axis, each another one. The axis's default and its ends are among them.
 
     Returns:
         The masters, the default first, the others in the order given. Contours are in the default's order, start where
@@ -46,25 +42,26 @@ def match_masters(
         cubics. Their outlines are those given, but for segments of no length.
 
     Raises:
-        OptionError: the locations are no such design space.
         GlyphsplineError: the outlines cannot be matched; the error says why, and names the contour of the default.
     """
-    regions, order = _regions(locations, axes)
+    order = sorted(range(len(values)), key=lambda k: values[k] != axis.default)  # the default first
     first = outlines[order[0]]
     em = first.metrics.units_per_em
     try:
-        contours, scales = _matched([outlines[k] for k in order], [locations[k] for k in order], em)
+        contours, scales = _matched([outlines[k] for k in order], [f"{axis.tag}={values[k]:g}" for k in order], em)
     except GlyphsplineError as error:
         raise error.locate(glyph=first.name) from None
     advances = np.array([outlines[k].advance for k in order]) * scales
     codes = sorted({code for outline in outlines for code in outline.unicodes})
-    return Masters(first.name, first.gid, tuple(codes), tuple(axes), regions, contours, advances, first.metrics)
+    at = [axis.normalised(values[k]) for k in order]
+    # A region ends at the masters beside it, or at an end of the axis.
+    regions = [(max([y for y in at if y < x], default=x), x, min([y for y in at if y > x], default=x)) for x in at[1:]]
+    tents = np.array(regions).reshape(-1, 1, 3)
+    return Masters(first.name, first.gid, tuple(codes), (axis,), tents, contours, advances, first.metrics)
 
 
-def _matched(
-    outlines: Sequence[Outline], locations: Sequence[Mapping[str, float]], em: float
-) -> tuple[list[MasterContour], FloatArray]:
-    """The contours in all masters, the default first, and the scales of the outlines."""
+def _matched(outlines: Sequence[Outline], places: Sequence[str], em: float) -> tuple[list[MasterContour], FloatArray]:
+    """The contours in all masters, the default first, and the scales of the outlines; ``places`` are for errors."""
     scales = np.array([em / outline.metrics.units_per_em for outline in outlines])
     masters = []
     for scale, outline in zip(scales.tolist(), outlines, strict=True):
@@ -73,12 +70,11 @@ def _matched(
             contours = [contour.reversed() for contour in contours]
         masters.append([Landmarks(Contour(c.points * scale, c.degrees), em) for c in contours])
     parts = [[own.contour] for own in masters[0]]
-    for other, location in zip(masters[1:], locations[1:], strict=True):
+    for other, place in zip(masters[1:], places[1:], strict=True):
         try:
             partners = _paired(masters[0], other)
             parts = [_with(own, other[j], i) for i, (own, j) in enumerate(zip(parts, partners, strict=True))]
         except GlyphsplineError as error:
-            place = " ".join([f"{tag}={value:g}" for tag, value in location.items()])
             raise GlyphsplineError(f"unlike the master at {place}: {error.message}", contour=error.contour) from None
     together = []
     for own in parts:  # a segment that is a line in all masters is one
@@ -158,38 +154,3 @@ def _with(parts: Sequence[Contour], other: Landmarks, index: int) -> list[Contou
             contour=index,
         )
     return [*(cut(contour, u) for contour in parts), cut(other.contour, v)]
-
-
-def _regions(locations: Sequence[Mapping[str, float]], axes: Sequence[DesignAxis]) -> tuple[FloatArray, list[int]]:
-    """(K - 1, A, 3) regions of the masters but the default, and the order of all: the default first."""
-    tags = [axis.tag for axis in axes]
-    if len(locations) < 2:
-        raise OptionError("a design space has two masters or more")
-    for location in locations:
-        for tag in location:
-            if tag not in tags:
-                raise OptionError(f"no axis {tag!r}: there are {', '.join(tags)}")
-    peaks = np.array(
-        [[axis.normalised(location.get(axis.tag, axis.default)) for axis in axes] for location in locations]
-    )
-    at_default = np.flatnonzero(~peaks.any(axis=1))
-    if len(at_default) != 1:
-        raise OptionError(f"one master is at the default of all axes, not {len(at_default)}")
-    others = [k for k in range(len(locations)) if k != at_default[0]]
-    regions = np.zeros((len(others), len(axes), 3))
-    for row, k in enumerate(others):
-        along = np.flatnonzero(peaks[k])
-        if len(along) > 1:
-            raise OptionError(f"a master leaves the default along one axis, not {len(along)}: {dict(locations[k])}")
-        a = int(along[0])
-        side = np.sign(peaks[k, a])
-        own = np.sort(np.abs(peaks[others, a][peaks[others, a] * side > 0]))
-        at = abs(float(peaks[k, a]))
-        if own[-1] != 1 or (len(axes) > 1 and len(own) > 1) or (own == at).sum() > 1:
-            raise OptionError(
-                f"axis {tags[a]} has one master at each end but its default, and others only if there is no other axis"
-            )
-        low, high = own[own < at], own[own > at]
-        region = [low[-1] if len(low) else 0.0, at, high[0] if len(high) else 1.0]
-        regions[row, a] = region if side > 0 else [-x for x in region[::-1]]
-    return regions, [int(at_default[0]), *others]

@@ -66,14 +66,13 @@ def masters_of_fonts(
     """
     design, values = axis_of(axis, len(sources))
     default = sources[0]
-    locations = [{design.tag: value} for value in values]
     for name in default.glyph_names if glyphs is None else glyphs:
         outlines: list[Outline] = []
         try:
             outlines.append(default.outline(name))
             for source in sources[1:]:
                 outlines.append(source.outline(_partner(outlines[0], source)))
-            found: Masters | Unmatched = match_masters(outlines, locations, [design])
+            found: Masters | Unmatched = match_masters(outlines, values, design)
         except GlyphsplineError as error:
             found = Unmatched(name, error.locate(glyph=name), tuple(outlines))
         yield found

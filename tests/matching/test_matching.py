@@ -33,7 +33,7 @@ def outline(*contours: gs.Contour, em: float = 1000.0) -> gs.Outline:
 
 
 def matched(*outlines: gs.Outline, axis: DesignAxis = WEIGHT, values: tuple[float, ...] = (300.0, 700.0)) -> Masters:
-    return match_masters(outlines, [{"wght": value} for value in values], [axis])
+    return match_masters(outlines, values, axis)
 
 
 def disc(radius: float, x: float = 0.0, y: float = 0.0, pieces: int = 4, turn: int = 1) -> gs.Contour:
@@ -224,36 +224,10 @@ def test_three_masters_are_cut_alike() -> None:
 def test_regions_between_masters_of_one_axis() -> None:
     axis = DesignAxis("wght", "Weight", 100.0, 100.0, 900.0)
     outlines = [outline(polygon_contour(SQUARE * k)) for k in (1.0, 3.0, 4.0)]
-    masters = match_masters(outlines, [{"wght": 100}, {"wght": 900}, {"wght": 500}], [axis])
+    masters = match_masters(outlines, [100.0, 900.0, 500.0], axis)
     np.testing.assert_allclose(masters.regions[:, 0], [[0.5, 1, 1], [0, 0.5, 1]])
     for value, size in ((100, 1), (300, 2.5), (500, 4), (700, 3.5), (900, 3)):
         assert np.ptp(masters.instance({"wght": value}).contours[0].points) == pytest.approx(100 * size)
-
-
-def test_two_axes() -> None:
-    axes = [WEIGHT, DesignAxis("wdth", "Width", 50.0, 100.0, 100.0)]
-    outlines = [outline(polygon_contour(SQUARE * (x, y))) for x, y in ((2, 2), (3, 2), (1, 2))]
-    masters = match_masters(outlines, [{}, {"wght": 700}, {"wdth": 50}], axes)
-    np.testing.assert_array_equal(masters.peaks, [[0, 0], [1, 0], [0, -1]])
-    assert np.ptp(masters.instance({"wght": 700, "wdth": 50}).contours[0].points[:, 0]) == pytest.approx(200)
-
-
-@pytest.mark.parametrize(
-    ("locations", "words"),
-    [
-        ([{"wght": 300}], "two masters"),
-        ([{"wght": 300}, {"opsz": 8}], "no axis 'opsz'"),
-        ([{"wght": 500}, {"wght": 700}], "not 0"),
-        ([{}, {"wght": 300}], "not 2"),
-        ([{}, {"wght": 500}], "one master at each end but"),
-        ([{}, {"wght": 700}, {"wght": 700}], "one master at each end but"),
-        ([{}, {"wght": 700, "wdth": 50}], "one axis, not 2"),
-    ],
-)
-def test_locations_that_are_no_design_space(locations: list[dict[str, float]], words: str) -> None:
-    outlines = [outline(polygon_contour(SQUARE))] * len(locations)
-    with pytest.raises(gs.OptionError, match=words):
-        match_masters(outlines, locations, [WEIGHT, DesignAxis("wdth", "Width", 50.0, 100.0, 100.0)])
 
 
 def test_a_contour_that_is_missing() -> None:
