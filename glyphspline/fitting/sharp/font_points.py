@@ -15,7 +15,7 @@ from ...types import BoolArray, FloatArray, IntArray
 from ..options import Options
 from .corners import NO_HANDLE
 from .font_fit import ONE, chains, findings
-from .font_quadratics import Stored
+from .font_outlines import Stored
 from .font_quadratics import fit_contour as fit_quadratics
 from .run_gates import CORNER
 from .run_gates import KINK as KINKED
