@@ -70,16 +70,26 @@ def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> in
     """
     data = content.encode() if isinstance(content, str) else content
     partial = os.path.join(os.path.dirname(path), f".{os.getpid()}{PARTIAL}")
-    with replacing(path, durable=durable, partial=partial) as file:
-        file.write(data)
+    with replacing(path, durable=durable, partial=partial, buffering=0) as file:
+        write_all(file, data)
     return len(data)
 
 
+def write_all(file: BinaryIO, data: bytes) -> None:
+    """Write to an unbuffered file, which may take less than all at a time."""
+    view = memoryview(data)
+    while view:
+        view = view[file.write(view) :]
+
+
 @contextmanager
-def replacing(path: Path | str, *, durable: bool = False, partial: str | None = None) -> Iterator[BinaryIO]:
+def replacing(
+    path: Path | str, *, durable: bool = False, partial: str | None = None, buffering: int = -1
+) -> Iterator[BinaryIO]:
     """A file to write to, which gets its name when the block ends without an error; see :func:`write_whole`.
 
-    ``partial``: the temporary name; without it, one of this process for this file.
+    Args:
+        partial: the temporary name; without it, one of this process for this file. buffering: as :func:`open` has it.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
@@ -87,7 +97,7 @@ def replacing(path: Path | str, *, durable: bool = False, partial: str | None = 
     folder, name = os.path.split(path)
     partial = partial or os.path.join(folder, f".{name.strip('.')}-{os.getpid()}{PARTIAL}")
     with writing(path):
-        file = open(partial, "xb")  # noqa: SIM115 -- x does not follow a link planted under the temporary name
+        file = open(partial, "xb", buffering)  # noqa: SIM115 -- x does not follow a link planted under the temporary name
         try:
             with file:
                 yield file

@@ -35,7 +35,7 @@ def check_many(
     if not outlines:
         return []
     rows = measured([outline.contours for outline in outlines], thresholds, outlines[0].metrics.units_per_em, outer)
-    return findings([(outline.name, outline.gid) for outline in outlines], rows)
+    return list(findings([(outline.name, outline.gid) for outline in outlines], rows))
 
 
 def measured(glyphs: Sequence[Any], thresholds: Thresholds, units_per_em: float, outer: int = 0) -> Measured:

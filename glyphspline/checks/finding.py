@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import islice, repeat
 from typing import NamedTuple
 
 import numpy as np
@@ -86,28 +87,35 @@ class Measured(NamedTuple):
         return cls._make([np.concatenate(columns) for columns in zip(*(list(parts) or [empty]), strict=True)])
 
 
-def findings(glyphs: Sequence[tuple[str, int]], rows: Measured, tags: Sequence[str] = ()) -> list[list[Finding]]:
-    """What was measured of glyphs, names and glyph indices, as values; ``tags`` of the axes, if there are any."""
-    found: list[list[Finding]] = [[] for _ in glyphs]
-    for g, contour, segment, what, (parameter, value, detail, other, seen), point, at, (low, high) in zip(
-        *(column.tolist() for column in rows), strict=True
-    ):
-        kind, (name, gid) = KINDS[what], glyphs[g]
-        sentence = kind.sentence.replace("{value}", with_unit(value, kind.unit))
-        if "{" in sentence:
-            whom = "itself" if other < 0 else f"contour {other:.0f}"
-            along = with_unit(seen / detail, "units") if detail > 0 else ""
-            sentence = sentence.format(detail=detail, other=whom, along=along)
-        finding = Finding.__new__(Finding)  # a font may have a million: each takes a quarter of the time so
-        finding.__dict__.update(
-            kind=kind.name, level=kind.level, glyph=name, gid=gid, contour=contour, segment=segment,
-            parameter=parameter, point=tuple(point), value=value, unit=kind.unit,
-            detail=None if detail != detail else detail, other=None if other < 0 else int(other), sentence=sentence,
-            location=dict(zip(tags, at, strict=True)) if at else {}, between=None if low != low else (low, high),
-            seen=None if seen != seen else seen,
-        )  # fmt: skip
-        found[g].append(finding)
-    return found
+def findings(glyphs: Sequence[tuple[str, int]], rows: Measured, tags: Sequence[str] = ()) -> Iterator[list[Finding]]:
+    """What was measured of glyphs, names and glyph indices, as values of one glyph after the other.
+
+    ``tags``: of the axes, if there are any.
+    """
+    rows = rows.chosen(np.argsort(rows.glyphs, kind="stable"))
+    counts = np.bincount(rows.glyphs, minlength=len(glyphs)).tolist()
+    columns = [*rows[1:4], *rows.numbers.T, *rows.points.T, *rows.between.T]  # lists of numbers, not of lists
+    values = zip(*(column.tolist() for column in columns), strict=True)
+    places = iter(rows.locations.tolist()) if tags else repeat(())
+    for (name, gid), count in zip(glyphs, counts, strict=True):
+        found = []
+        for contour, segment, what, parameter, value, detail, other, seen, x, y, low, high in islice(values, count):
+            kind = KINDS[what]
+            second, another = None if detail != detail else detail, None if other < 0 else int(other)
+            sentence = kind.sentence.replace("{value}", with_unit(value, kind.unit))
+            if "{" in sentence:
+                whom = "itself" if another is None else f"contour {another}"
+                along = with_unit(seen / detail, "units") if detail > 0 else ""
+                sentence = sentence.format(detail=second, other=whom, along=along)
+            made = Finding.__new__(Finding)  # a font may have a million: each takes a quarter of the time so
+            made.__dict__.update(
+                kind=kind.name, level=kind.level, glyph=name, gid=gid, contour=contour, segment=segment,
+                parameter=parameter, point=(x, y), value=value, unit=kind.unit, detail=second, other=another,
+                sentence=sentence, location=dict(zip(tags, next(places), strict=True)),
+                between=None if low != low else (low, high), seen=None if seen != seen else seen,
+            )  # fmt: skip
+            found.append(made)
+        yield found
 
 
 def with_unit(value: float, unit: str) -> str:

@@ -24,19 +24,26 @@ _PLAIN = re.compile(r"[A-Za-z0-9_-](?:[A-Za-z0-9_.-]{0,72}[A-Za-z0-9_-])?")
 _NOT_TEXT = re.compile("[\x7f-\x9f\ud800-\udfff]")
 
 
-def file_names(glyph_names: Sequence[str], names: Names = "glyph", cmap: Mapping[int, str] | None = None) -> list[str]:
-    """A file name, without suffix, for each glyph; no two are alike without regard to case.
+def file_names(
+    glyph_names: Sequence[str],
+    names: Names = "glyph",
+    cmap: Mapping[int, str] | None = None,
+    chosen: Sequence[int] | None = None,
+) -> list[str]:
+    """A file name, without suffix, for each chosen glyph; no two of a font are alike without regard to case.
 
-    They depend on all glyphs of the font, in order, not on which of them are selected.
+    They depend on all glyphs of the font, in order, not on which of them are chosen.
 
     Args:
         glyph_names: of all glyphs of the font.
         names: "glyph", the glyph's name; "unicode", its first code point, as in ``uni9F8D``; "gid", its index; "char",
             its first character. Glyphs without a code point keep their names.
         cmap: code point to glyph name.
+        chosen: glyph indices; None: all.
     """
+    chosen = range(len(glyph_names)) if chosen is None else chosen
     if names == "gid":
-        return [f"{gid:05}" for gid in range(len(glyph_names))]
+        return [f"{gid:05}" for gid in chosen]
     wanted = list(glyph_names)
     if names != "glyph" and cmap is not None:
         first = {cmap[code]: code for code in sorted(cmap, reverse=True)}
@@ -45,9 +52,15 @@ def file_names(glyph_names: Sequence[str], names: Names = "glyph", cmap: Mapping
     # Names that can be taken as they are stay so; of the others, and of those that clash, the UFO rule makes names.
     keys = list(map(_key, wanted))
     counts = Counter(keys)
-    stays = [counts[key] == 1 and _is_plain(name, key) for name, key in zip(wanted, keys, strict=True)]
-    taken = {key for key, stay in zip(keys, stays, strict=True) if stay}
-    return [name if stay else _by_rule(name, taken) for name, stay in zip(wanted, stays, strict=True)]
+
+    def stays(gid: int) -> bool:
+        return counts[keys[gid]] == 1 and _is_plain(wanted[gid], keys[gid])
+
+    if not all(map(stays, chosen)):  # then names depend on what is taken, and on those made before
+        staying = list(map(stays, range(len(wanted))))
+        taken = {key for key, stay in zip(keys, staying, strict=True) if stay}
+        wanted = [name if stay else _by_rule(name, taken) for name, stay in zip(wanted, staying, strict=True)]
+    return [wanted[gid] for gid in chosen]
 
 
 def _key(name: str) -> str:

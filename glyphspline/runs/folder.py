@@ -20,13 +20,14 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
 from filelock import FileLock, Timeout
 
 from ..errors import OutputError, words_of
-from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, writing
+from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, write_all, writing
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from ..types import Head
@@ -222,12 +223,14 @@ def _stored(path: str, size: int) -> bool:
 
 def remove_written(out: Path) -> None:
     """Remove the files listed in the manifest and journal of an earlier run, only inside the folders of formats."""
+    is_own = cache(lambda folder: is_folder(folder) and not (out / folder).is_symlink())
     for name in (MANIFEST, JOURNAL):
         for _, _, entry in _lines(out / name):
             for path in entry["files"].values():
                 folder, _, file = str(path).partition("/")
-                if is_folder(folder) and file == Path(file).name and not (out / folder).is_symlink():
-                    (out / folder / file).unlink(missing_ok=True)
+                if is_own(folder) and file == os.path.basename(file):
+                    with suppress(FileNotFoundError):
+                        os.unlink(f"{out}/{path}")
 
 
 def entries_of(out: Path) -> Iterator[dict[str, Any]]:
@@ -308,10 +311,8 @@ def recorded(
         journal = open(os.open(path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
 
     def write(data: bytes) -> None:
-        view = memoryview(data)
         with writing(path):
-            while view:
-                view = view[journal.write(view) :]
+            write_all(journal, data)
 
     with journal:
         write(b"\n")  # ends a truncated line

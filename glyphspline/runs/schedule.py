@@ -70,9 +70,11 @@ def _reader(place: Place, metrics: FontMetrics | None) -> Read:
     return lambda heads: bulk.outlines(heads, metrics)
 
 
-def heads_of(source: Source) -> dict[str, Head]:
-    """The glyphs of a source by their names, in glyph index order."""
-    return {name: Head(name, gid, source.unicodes.get(name, ())) for name, gid in source.gids.items()}
+def heads_of(source: Source, names: Iterable[str] | None = None) -> dict[str, Head]:
+    """The glyphs of a source by their names, in glyph index order: those of these names, or all."""
+    gids, codes = source.gids, source.unicodes
+    chosen = gids if names is None else sorted(gids.keys() & {*names}, key=gids.__getitem__)
+    return {name: Head(name, gids[name], codes.get(name, ())) for name in chosen}
 
 
 class InProcess(Executor):

@@ -92,6 +92,10 @@ class Limits:
         return None
 
 
+LIMITS = Limits()
+"""Those of a run that asks for none."""
+
+
 @dataclass(frozen=True)
 class RunSpec:
     """How the glyphs of a run are converted, and what is written.
@@ -119,7 +123,7 @@ class RunSpec:
     names: Names = option(
         "glyph", "Name files after the glyph's name, its code point (uni9F8D), its index, or its character.", WRITTEN
     )
-    limits: Limits = field(default_factory=Limits)
+    limits: Limits = LIMITS
     maps: Maps = field(default_factory=Maps)
     masters: bool = option(
         False,

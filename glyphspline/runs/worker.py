@@ -138,12 +138,14 @@ def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[di
     Args:
         measures: columns of all contours. offsets: (G + 1,) where the contours of each glyph begin.
     """
-    columns = []
+    columns: list[Sequence[Any]] = []
     for name in MEASURES:
         column = measures.get(name, [None] * int(offsets[-1]))
         if name in BOUNDS:
             column = [value if value is None else rounded_up(value, DECIMALS) for value in column]
-        columns.append([plain(value) for value in column])
+        if name in measures:
+            column = [plain(value) if isinstance(value, float) else value for value in column]
+        columns.append(column)
     entries = [dict(zip(MEASURES, row, strict=True)) for row in zip(*columns, strict=True)]
     return [entries[a:b] for a, b in pairwise(offsets.tolist())]
 

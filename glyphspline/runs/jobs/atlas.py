@@ -22,7 +22,7 @@ from ...writers.settings import BOTH, Maps
 from ...writers.svg.comb import curvature_scale
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, kinds_for, place_of, sources, workers
-from ..spec import Limits
+from ..spec import LIMITS
 from .convert import SCALE_SAMPLE
 
 PROFILED = 12
@@ -63,7 +63,7 @@ class AtlasJob(Job[str, Converted]):
         if self.masters:
             return [Item(name) for name in tasks]
         (source,) = sources(self.place)
-        return items(source.outlines(tasks, errors="return"), self.options, Limits())
+        return items(source.outlines(tasks, errors="return"), self.options, LIMITS)
 
     def together(self, tasks: Sequence[str], contents: Sequence[Any]) -> Converted:
         """Convert one glyph."""

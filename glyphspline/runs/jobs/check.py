@@ -11,7 +11,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
+from functools import cache
 from hashlib import blake2b
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +24,7 @@ from ...checks.finding import Finding, Measured, findings, severity
 from ...checks.kinds import DIRECTION, KINDS, LEVELS, THRESHOLDS, Level, Thresholds
 from ...checks.kinks import AxisKinks, AxisNumbers, KinkReport, tags_of
 from ...errors import FontError, GlyphsplineError
+from ...outlines.contour_arrays import end_to_end
 from ...outlines.masters import Masters
 from ...outlines.outline import Outline
 from ...readers import Source
@@ -32,7 +35,7 @@ from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
 from ..schedule import Side, readers, side_of, sources, workers
 from ..shapes import Shapes
-from ..spec import Limits
+from ..spec import LIMITS
 
 STEPS = 8
 """Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
@@ -135,29 +138,44 @@ class AxesJob(CheckJob):
 
 def _item(glyph: Outline | Masters, segments: int) -> Item | Exception:
     """A glyph that is checked with others of its em; one that is too large is an error."""
-    return Limits().error_of(segments) or Item(glyph, kind=glyph.metrics.units_per_em)
+    return LIMITS.error_of(segments) or Item(glyph, kind=glyph.metrics.units_per_em)
 
 
 def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
     """(n,) a number for the shape of each row's contour, the same in all glyphs; and of the other one, if any."""
-    found = np.zeros(len(rows.glyphs), dtype=np.int64)
-    known: dict[tuple[int, int, int], int] = {}
-    others = rows.numbers[:, 3].astype(np.int64).tolist()
-    for k, key in enumerate(zip(rows.glyphs.tolist(), rows.contours.tolist(), others, strict=True)):
-        if key not in known:
-            contours = glyphs[key[0]].contours
-            begin: FloatArray = contours[key[1]].points[..., :1, :]
-            data = b""
-            for contour in [contours[number] for number in key[1:] if number >= 0]:
-                # Decimals of coordinates up to which two contours have one shape.
-                data += (np.round(contour.points - begin, 2) + 0.0).tobytes() + contour.degrees.tobytes()
-            if (repeats := glyphs[key[0]].repeats) is not None:
-                first = sum(len(contour.degrees) for contour in contours[: key[1]])
-                repeats = repeats[first : first + len(contours[key[1]].degrees)]
-                data += repeats.tobytes() if repeats.any() else b""
-            known[key] = int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
-        found[k] = known[key]
-    return found
+
+    @cache
+    def contours_of(g: int) -> tuple[list[bytes], FloatArray]:
+        """The shapes of a glyph's contours, and where they begin."""
+        glyph = glyphs[g]
+        if isinstance(glyph, Outline):
+            arrays = glyph.arrays
+        else:
+            arrays = end_to_end([(contour.points, contour.degrees) for contour in glyph.contours])
+        points, degrees, offsets, starts = arrays
+        begins = points[..., starts[:-1], :]
+        moved = _two_decimals(points - np.repeat(begins, np.diff(starts), axis=-2))
+        if glyph.repeats is not None:
+            degrees = degrees + 4 * glyph.repeats
+        ends = zip(pairwise(starts.tolist()), pairwise(offsets.tolist()), strict=True)
+        return [moved[..., a:b, :].tobytes() + degrees[i:j].tobytes() for (a, b), (i, j) in ends], begins
+
+    @cache
+    def shape(g: int, contour: int, other: int) -> int:
+        shapes, begins = contours_of(g)
+        data = shapes[contour]
+        if other >= 0:
+            data += shapes[other] + _two_decimals(begins[..., other, :] - begins[..., contour, :]).tobytes()
+        return int.from_bytes(blake2b(data, digest_size=8).digest(), "little", signed=True)
+
+    others = rows.numbers[:, 3].astype(np.int64)
+    found = map(shape, rows.glyphs.tolist(), rows.contours.tolist(), others.tolist())
+    return np.array(list(found), dtype=np.int64)
+
+
+def _two_decimals(points: FloatArray) -> FloatArray:
+    """Coordinates, and no negative zero, up to which two contours have one shape."""
+    return np.round(points, 2) + 0.0
 
 
 @dataclass(frozen=True)

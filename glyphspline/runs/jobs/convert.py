@@ -194,8 +194,9 @@ def require_libraries(spec: RunSpec) -> None:
 
 def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
     """A task for each glyph, in glyph index order."""
-    stems, chosen = file_names(source.glyph_names, names, source.cmap), {*glyphs}
-    return [Task(head, stems[head.gid]) for name, head in heads_of(source).items() if name in chosen]
+    heads = list(heads_of(source, glyphs).values())
+    stems = file_names(source.glyph_names, names, source.cmap, [head.gid for head in heads])
+    return list(map(Task, heads, stems))
 
 
 def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:

@@ -14,7 +14,7 @@ from ...readers.source import OutlineOrError
 from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Side, heads_of, readers, side_of, workers
-from ..spec import Limits
+from ..spec import LIMITS
 
 
 class Pair(NamedTuple):
@@ -65,7 +65,7 @@ class CompareJob(Job[Pair, Found]):
 def _item(old: OutlineOrError, new: OutlineOrError) -> Item | GlyphsplineError:
     """Both outlines of a glyph, or why one of them cannot be compared."""
     for which, outline in (("old", old), ("new", new)):
-        error = outline if isinstance(outline, GlyphsplineError) else Limits().error_of(len(outline.arrays.degrees))
+        error = outline if isinstance(outline, GlyphsplineError) else LIMITS.error_of(len(outline.arrays.degrees))
         if error:
             return GlyphsplineError(f"{which}: {reason(error)}")
     pair: tuple[Any, Any] = old, new
@@ -214,7 +214,7 @@ def compare_fonts(
         fonts={"old": about(old), "new": about(new)},
     )  # fmt: skip
     job, total = CompareJob(side_of(old), side_of(new), found.tolerance), len(glyphs.pairs)
-    with workers(jobs if total else 0, Limits.seconds, ["comparing"], total, executor=executor) as pool:
+    with workers(jobs if total else 0, LIMITS.seconds, ["comparing"], total, executor=executor) as pool:
         for part in run(job, glyphs.pairs, pool, ordered=True, observer=observer):
             for each in part.result:
                 if isinstance(each, Unread):

@@ -21,7 +21,7 @@ from ...readers.ufo import Ufo
 from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, place_of, sources, workers
-from ..spec import Limits
+from ..spec import LIMITS
 
 OF_COMPONENT = "is of a component"
 """Why contours are left that another glyph draws; there they are mended."""
@@ -57,7 +57,7 @@ class MendJob(Job[Head, list[Mended]]):
         """A glyph in all its masters, with the contours that it does not draw itself."""
         (source,) = sources(self.place)
         masters = source.masters(task[0])
-        return Limits().error_of(sum(map(len, masters.contours))) or Item((masters, into_of(source, masters)))
+        return LIMITS.error_of(sum(map(len, masters.contours))) or Item((masters, into_of(source, masters)))
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""

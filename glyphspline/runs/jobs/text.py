@@ -25,7 +25,7 @@ from ...writers.svg.path_data import curves_data
 from ..engine import Item, Job, reason, run, work
 from ..pool import TimeLimitError, WorkerLostError, sign_of_life
 from ..schedule import Place, place_of, sources
-from ..spec import MAPS, Limits
+from ..spec import LIMITS, MAPS
 from .convert import ConvertJob
 
 if TYPE_CHECKING:
@@ -83,7 +83,7 @@ class FitJob(Job[Outline, list[GlyphResult | GlyphsplineError]]):
         """Outlines; one that is too large is an error."""
         from ..worker import items
 
-        return items(tasks, self.options, Limits())
+        return items(tasks, self.options, LIMITS)
 
     def together(self, tasks: Sequence[Outline], contents: Sequence[Any]) -> list[GlyphResult | GlyphsplineError]:
         """The results of a batch."""
