@@ -21,6 +21,7 @@ from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
 from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
+from .single import turned_handles
 from .state import Change, Design, State, distances
 
 BETTER = 0.7
@@ -45,6 +46,9 @@ GRID, STILL, STILL_KINKS = "is mended by no move on the grid", "is still found",
 BEYOND = "is beyond the tolerance"
 WEAK = (None, GRID, STILL, STILL_KINKS)
 """Reasons why a joint is left that are only given if nothing else is in the way."""
+
+TURNED = 3
+"""Ways to turn single handles that are tried at most."""
 
 REACH = 2
 """Segments from one joint of a group to the next at most."""
@@ -219,18 +223,41 @@ def groups_of(places: Sequence[tuple[int, int]], counts: Mapping[int, int]) -> l
 
 
 def proposals(group: Group, first: MasterContour, contour: MasterContour, design: Design) -> Iterator[Proposal]:
-    """The moves of a group that are within the tolerance: those after which joints turn least, then those that move
-    points least. If there are none the group knows why.
+    """The moves of a group that are within the tolerance; if there are none the group knows why.
+
+    Of one master those come first that turn single handles, so that curvatures meet best; each then with the least
+    moves besides after which they meet, where they do not. Others follow: those after which joints turn least, then
+    those that move points least.
 
     Args:
         first: the contour as it was. contour: as it is now.
     """  # fmt: skip
     layout = Layout(contour)
     seen = set[bytes]()
+    if group.kind == "kink" and len(layout.points) == 1:
+        turned = turned_handles(layout, group.joints, design)
+        for points in [each for each in turned if _is_mended(layout, group, each, False, design)][:TURNED]:
+            seen.add(points.tobytes())
+            if proposal := _proposal(group, first, contour, points, design):
+                yield proposal
+                if (contour.degrees == 3).any():
+                    yield from _least(group, first, contour, points, design, [way for way in WAYS if way.meets], seen)
+    yield from _least(group, first, contour, contour.points, design, WAYS, seen)
+
+
+def _least(
+    group: Group, first: MasterContour, contour: MasterContour, points: FloatArray, design: Design,
+    ways: Sequence[Way], seen: set[bytes],
+) -> Iterator[Proposal]:  # fmt: skip
+    """The least moves from points (K, N, 2) on, way by way; ``seen``: those that are known, to which others are added.
+
+    If all ways are tried and there are none, the group knows what it needs.
+    """
+    layout = Layout(MasterContour(points, contour.degrees))
     stretches = dict[tuple[int, bool], Stretch]()
-    for exact, ways in groupby(WAYS, key=lambda way: way.exact):
+    for exact, own in groupby(ways, key=lambda way: way.exact):
         later = []
-        for way in ways:
+        for way in own:
             if (way.far, way.node) not in stretches:
                 free = sorted({point for joint in group.joints for point in layout.free(joint, way.far, way.node)})
                 if not free:
@@ -239,19 +266,21 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
             stretch = stretches[way.far, way.node]
             bounds = bounds_of(stretch, group, way, design)
             most = SMALL * design.em / 1000 if way.small else np.inf
-            key = b"".join([bytes(way[:3]), *(bound.most.tobytes() for bound in bounds)])
+            key = b"".join([points.tobytes(), bytes(way[:3]), *(bound.most.tobytes() for bound in bounds)])
             if key in seen:
                 continue
             seen.add(key)
+            if not bounds:
+                continue
             x = stretch.least(bounds, LOOSE * most)
             if stretch.excess(x, bounds) > HOPE:
                 group.blame(BEYOND)
                 continue
-            for points in _on_grid(stretch, bounds, x, most):
-                if points.tobytes() in seen or not _is_mended(layout, group, points, exact, design):
+            for moved in _on_grid(stretch, bounds, x, most):
+                if moved.tobytes() in seen or not _is_mended(layout, group, moved, exact, design):
                     continue
-                seen.add(points.tobytes())
-                proposal = _proposal(group, first, layout, points, design)
+                seen.add(moved.tobytes())
+                proposal = _proposal(group, first, contour, moved, design)
                 if proposal is None:
                     continue
                 if proposal.change <= SMALL * design.em / 1000:
@@ -260,16 +289,16 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
                     later.append(proposal)
                 break
         yield from sorted(later, key=lambda each: each.change)
-    if group.needs is None and group.why in (*WEAK, BEYOND) and stretches:
+    if ways is WAYS and group.needs is None and group.why in (*WEAK, BEYOND) and stretches:
         way = WAYS[-1]._replace(meets=group.kind == "jump")
         anything = design._replace(tolerance=np.inf)
         stretch = Stretch(layout, [*stretches.values()][-1].free.tolist(), anything)
         bounds = bounds_of(stretch, group, way, design)
         x = stretch.least(bounds, np.inf)
-        for points in _on_grid(stretch, bounds, x, np.inf):
-            if _is_mended(layout, group, points, way.exact, design):
+        for moved in _on_grid(stretch, bounds, x, np.inf):
+            if _is_mended(layout, group, moved, way.exact, design):
                 farthest = max(float(np.abs(stretch.moves(x)).max()), design.tolerance)
-                _proposal(group, first, layout, points, design, farthest)
+                _proposal(group, first, contour, moved, design, farthest)
                 break
 
 
@@ -281,10 +310,11 @@ def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, most: flo
 
 
 def _proposal(
-    group: Group, first: MasterContour, layout: Layout, points: FloatArray, design: Design, near: float | None = None
-) -> Proposal | None:
+    group: Group, first: MasterContour, contour: MasterContour, points: FloatArray, design: Design,
+    near: float | None = None,
+) -> Proposal | None:  # fmt: skip
     """A contour with moved points, if it is within the tolerance; ``near``: measure up to there."""
-    new, old = MasterContour(points, layout.degrees), layout.points
+    new, old = MasterContour(points, contour.degrees), contour.points
     distance = float(distances(first, new, design._replace(tolerance=near or design.tolerance)).max())
     if distance > design.tolerance:
         group.needs = min(group.needs or np.inf, distance)

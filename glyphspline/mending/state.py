@@ -19,7 +19,7 @@ from ..curves.pairing import SHARPNESS, pair_instances
 from ..outlines.contour_arrays import offsets_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray, IntArray
-from .joints import SMOOTH
+from .joints import SMOOTH, Layout
 
 STEPS = 8
 """Steps of each axis, at whose ends findings other than kinks are looked for besides the masters."""
@@ -156,7 +156,8 @@ class Design(NamedTuple):
         if axes:
             weights = masters.weights_at(np.unique(np.concatenate(places), axis=0))
             grid = masters.weights_at(masters.grid()).reshape(*(len(masters.ticks(a)) for a in axes), -1)
-        every = np.concatenate([np.zeros(1), *(contour.points.ravel() for contour in masters.contours)])
+        drawn = [contour.points[:, ~Layout(contour).implied].ravel() for contour in masters.contours]
+        every = np.concatenate([np.zeros(1), *drawn])
         digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
         step, em = step or float(10.0 ** -next(digits, DIGITS)), float(masters.metrics.units_per_em)
         return cls(grid, along, weights, step, tolerance, em, thresholds)
