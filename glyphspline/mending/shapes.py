@@ -12,6 +12,7 @@ from itertools import product
 
 import numpy as np
 
+from ..curves.bezier import cross
 from ..outlines.masters import MasterContour
 from ..types import FloatArray, IntArray
 
@@ -47,11 +48,34 @@ def shape_moves(kind: str, contour: MasterContour, segment: int, step: float) ->
     for numbers, places in MOVED[kind](contour, segment):
         rounded = np.round(places / step) * step
         kept = places == contour.points[:, numbers]
-        yield numbers, np.where(kept, places, rounded)
+        yield with_nodes(contour, numbers, np.where(kept, places, rounded), step)
+
+
+def with_nodes(contour: MasterContour, numbers: IntArray, places: FloatArray, step: float) -> Move:
+    """A move with that of nodes of quadratics beside it: those about midway between their control points go where, on
+    the grid, they turn least."""
+    starts, count = starts_of(contour), contour.points.shape[1]
+    between = starts[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
+    beside = np.concatenate([numbers - 1, numbers + 1]) % count
+    nodes = np.setdiff1d(np.intersect1d(between, beside), numbers)
+    if not len(nodes):
+        return numbers, places
+    points = contour.points.copy()
+    points[:, numbers] = places
+    a, b, old = points[:, nodes - 1], points[:, (nodes + 1) % count], points[:, nodes]
+    middle = (a + b) / 2
+    near = (np.abs(old - middle).max(axis=2) <= step).all(axis=0) & (old != middle).any(axis=(0, 2))
+    a, b, old, middle, nodes = a[:, near], b[:, near], old[:, near], middle[:, near], nodes[near]
+    around = step * np.stack(np.meshgrid(*[np.arange(-1.0, 2.0)] * 2), axis=-1).reshape(-1, 1, 1, 2)
+    tried = np.concatenate([old[None], np.round(middle / step) * step + around])  # (T, K, n, 2)
+    off = np.abs(cross(tried - a, b - a)) + np.where(np.abs(tried - middle).max(axis=3) <= step, 0.0, np.inf)
+    best = np.take_along_axis(tried, off.argmin(axis=0)[None, ..., None], axis=0)[0]
+    return np.append(numbers, nodes), np.concatenate([places, best], axis=1)
 
 
 def line_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
-    """A line made level: its ends, with or without the handles there."""
+    """A line made level: its ends, with or without the handles there; first at that end at whose height more nodes are.
+    """
     count, m = contour.points.shape[1], len(contour)
     a = int(starts_of(contour)[segment])
     b = (a + 1) % count
@@ -61,7 +85,10 @@ def line_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
         return
     handles = [(a, (a - 1) % count)] * bool(contour.degrees[segment - 1] > 1)
     handles += [(b, (b + 1) % count)] * bool(contour.degrees[(segment + 1) % m] > 1)
-    for share, carried in product(SHARES, (True, False) if handles else (False,)):
+    nodes = contour.points[:, starts_of(contour), axis]
+    alike = [int((nodes == contour.points[:, [end], axis]).all(axis=0).sum()) for end in (a, b)]
+    shares = sorted(SHARES, key=lambda share: -np.interp(share, [0, 1], alike)) if alike[0] != alike[1] else SHARES
+    for share, carried in product(shares, (True, False) if handles else (False,)):
         level = contour.points[:, a, axis] + share * way[:, axis]
         level = np.where(way[:, axis] == 0, level, np.round(level))
         numbers = [a, b, *(end for _, end in handles)] if carried else [a, b]
@@ -139,9 +166,8 @@ def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
     u, v, chord = points[:, 1] - points[:, 0], points[:, 2] - points[:, 3], points[:, 3] - points[:, 0]
     shares = np.ones((len(points), 2))
     with np.errstate(divide="ignore", invalid="ignore"):
-        cross = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
-        meets = np.stack([chord[:, 0] * v[:, 1] - chord[:, 1] * v[:, 0], chord[:, 0] * u[:, 1] - chord[:, 1] * u[:, 0]])
-        meets = (meets / cross).T
+        across = cross(u, v)
+        meets = np.stack([cross(chord, v), cross(chord, u)], axis=1) / across[:, None]
         size = (chord * chord).sum(axis=1)
         ends = np.stack([size / (u * chord).sum(axis=1), -size / (v * chord).sum(axis=1)], axis=1)
     both = np.asarray(np.isfinite(meets).all(axis=1) & (meets > 0).all(axis=1))

@@ -14,8 +14,9 @@ import numpy as np
 from ..checks.turns import joint_controls, jumps_of, turns_of
 from ..curves.bezier import cross
 from ..outlines.masters import MasterContour
-from ..types import FloatArray
+from ..types import BoolArray, FloatArray
 from .joints import EXACT, SMOOTH, Layout
+from .shapes import with_nodes
 from .state import Design
 
 MOST = 3
@@ -36,8 +37,11 @@ ALONG = 0.3
 REACH = 2
 """Steps of the grid around the best place that are tried."""
 
-Option = tuple[int, FloatArray]
-"""A point, and its new places (K, 2)."""
+SLIDE = 2.0
+"""What a change of a handle's length costs, as a share of it, in relative jumps of curvature."""
+
+Option = tuple[int, FloatArray, float]
+"""A point, its new places (K, 2), and what a change of its handle's length costs."""
 
 
 def turned_handles(layout: Layout, joints: Sequence[int], design: Design) -> list[FloatArray]:
@@ -55,11 +59,13 @@ def turned_handles(layout: Layout, joints: Sequence[int], design: Design) -> lis
         if not moves or len(moves) < sum(option is not None for option in chosen):
             continue
         points = layout.points.copy()
-        points[:, [*moves]] = np.stack([*moves.values()], axis=1)
+        numbers, places = with_nodes(layout.contour, np.array([*moves]), np.stack([*moves.values()], axis=1), design.step)
+        points[:, numbers] = places
         controls = joint_controls(MasterContour(points, layout.degrees))[:, near]
         cost = TURN * np.radians(np.nan_to_num(np.abs(turns_of(controls)), nan=SMOOTH)) + weights * jumps_of(controls, em)
         cost = np.minimum(cost, TURN * np.radians(SMOOTH)).sum(axis=1).mean()
-        found.append((float(cost) + POINT * len(moves), points))
+        other = sum(POINT + option[2] for option in chosen if option is not None)
+        found.append((float(cost) + other, points))
     return [points for _, points in sorted(found, key=lambda each: each[0])]
 
 
@@ -85,16 +91,21 @@ def _options(layout: Layout, joint: int, step: float) -> Iterator[Option]:
             if (np.abs(meets - length) < length).all():
                 lengths.insert(0, meets)
         for each in lengths:
-            places = _on_grid(old, node, way, each, step)
-            if not (layout.frozen[:, number] & (np.abs(places - old) > EXACT)).any():
-                yield int(number), places
+            places = _on_grid(old, node, way, each, layout.frozen[:, number], step)
+            if (places != old).any():
+                yield int(number), places, SLIDE * float(np.abs(each / length - 1).max())
 
 
-def _on_grid(old: FloatArray, node: FloatArray, way: FloatArray, length: FloatArray, step: float) -> FloatArray:
-    """(K, 2) places on the grid near so much along the way from nodes; the old ones where those are as good."""
+def _on_grid(
+    old: FloatArray, node: FloatArray, way: FloatArray, length: FloatArray, frozen: BoolArray, step: float
+) -> FloatArray:
+    """(K, 2) places on the grid near so much along the way from nodes; the old ones where those are as good.
+
+    ``frozen``: (K, 2) coordinates that stay.
+    """
     best = node + length[:, None] * way
     around = np.stack(np.meshgrid(*[np.arange(-REACH, REACH + 1.0)] * 2), axis=-1).reshape(-1, 1, 2)
-    tried = step * (np.round(best / step) + around)  # (T, K, 2)
+    tried = np.where(frozen, old, step * (np.round(best / step) + around))  # (T, K, 2)
     off = tried - best
     prices = cross(off, way) ** 2 + ALONG**2 * (off * way).sum(axis=-1) ** 2
     places = np.take_along_axis(tried, prices.argmin(axis=0)[None, :, None], axis=0)[0]
