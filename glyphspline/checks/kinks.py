@@ -290,13 +290,14 @@ def kinks(
 
 def kinks_along(
     glyphs: Iterable[Masters], axes: tuple[DesignAxis, ...], location: Mapping[str, float], chosen: Sequence[int],
-    corner_angle: float,
+    corner_angle: float, turns_only: bool = False,
 ) -> list[AxisKinks]:  # fmt: skip
     """The smooth joints of glyphs along the ``chosen`` of a font's axes, by their numbers.
 
     Args:
         glyphs: in all their masters. axes: of a font without glyphs; otherwise those of its glyphs count.
-        location: user-space values of the other axes.
+        location: user-space values of the other axes. turns_only: whether jumps of curvature, and turns at even values
+            of an axis, are left out, as zeros.
     """
     none = np.zeros(0)
     parts = [
@@ -308,7 +309,7 @@ def kinks_along(
         base = batch[0].normalised(location)
         joints = [_smooth_joints(masters, corner_angle) for masters in batch]
         for k, part in zip(chosen, parts, strict=True):
-            part.append(_joints_along(batch, joints, k, base))
+            part.append(_joints_along(batch, joints, k, base, turns_only))
     return [AxisKinks.joined(part[1:] or part) for part in parts]
 
 
@@ -439,8 +440,9 @@ def _smooth_joints(masters: Masters, corner_angle: float) -> tuple[FloatArray, I
 
 
 def _joints_along(
-    glyphs: Sequence[Masters], smooth: Sequence[tuple[FloatArray, IntArray]], axis: int, base: FloatArray
-) -> AxisKinks:
+    glyphs: Sequence[Masters], smooth: Sequence[tuple[FloatArray, IntArray]], axis: int, base: FloatArray,
+    turns_only: bool,
+) -> AxisKinks:  # fmt: skip
     """The smooth joints of glyphs along an axis, unsorted; ``base``: their normalised location, but for the axis."""
     axes, user = glyphs[0].axes, glyphs[0].axes[axis].user
     ticks = [
@@ -457,7 +459,8 @@ def _joints_along(
     low = np.concatenate([np.tile(values[:-1], count) for values, count in zip(ticks, joints, strict=True)])
     high = np.concatenate([np.tile(values[1:], count) for values, count in zip(ticks, joints, strict=True)])
     em = np.repeat(np.repeat([glyph.metrics.units_per_em for glyph in glyphs], joints), intervals)
-    (turns, ways), (jumps, jump_ways) = largest_turns(start, end), largest_jumps(start, end, em)
+    turns, ways = largest_turns(start, end)
+    jumps, jump_ways = np.zeros((2, len(turns))) if turns_only else largest_jumps(start, end, em)
     owners, begins = np.repeat(np.arange(len(intervals)), intervals), np.cumsum(intervals) - intervals
     row, jump_row = (np.lexsort((-values, owners))[begins] for values in (turns, jumps))  # the first largest of each
     at, jumps_at = low + ways * (high - low), low + jump_ways * (high - low)
@@ -469,6 +472,8 @@ def _joints_along(
         on = _masters_on(glyph, axis, _at(base, axis, values))
         at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
         between[owners == g] = _around(values[on], at[row][owners == g])
+        if turns_only:
+            continue
         k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
         whole = values[k + 1] - values[k]
         way = ((grid - values[k]) / np.where(whole > 0, whole, 1.0))[:, None, None, None, None]

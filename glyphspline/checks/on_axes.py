@@ -34,13 +34,14 @@ such outlines have kinks that those of ``glyf`` have not."""
 
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
-    outer: int = 0,
+    outer: int = 0, turns_only: bool = False,
 ) -> tuple[Measured, list[AxisKinks]]:  # fmt: skip
     """Measure glyphs of a variable font: each finding at its worst place, and all smooth joints along each axis.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
         tags: of the axes along which they are looked at. steps: of an axis. outer: see :attr:`.Source.outer`.
+        turns_only: what of joints along axes is left out, see :func:`.kinks_along`.
 
     Raises:
         GlyphsplineError: masters of a glyph cannot be distinguished.
@@ -53,7 +54,7 @@ def on_axes(
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])
-    along_axes = kinks_along(glyphs, axes, location, chosen, thresholds.corner_angle)
+    along_axes = kinks_along(glyphs, axes, location, chosen, thresholds.corner_angle, turns_only=turns_only)
     smooth = smooth_joints(along_axes)
     kinks = kinks_of(glyphs, location, chosen, along_axes, thresholds)
     known = np.array([joint in smooth for joint in joints_of(rows)], dtype=np.bool_)

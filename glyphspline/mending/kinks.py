@@ -21,7 +21,7 @@ from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
 from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
-from .single import turned_handles
+from .single import single_handles
 from .state import Change, Design, State, distances
 
 BETTER = 0.7
@@ -234,8 +234,8 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
     """  # fmt: skip
     layout = Layout(contour)
     seen = set[bytes]()
-    if group.kind == "kink" and len(layout.points) == 1:
-        turned = turned_handles(layout, group.joints, design)
+    if len(layout.points) == 1:
+        turned = single_handles(layout, group.joints, group.kind, design)
         for points in [each for each in turned if _is_mended(layout, group, each, False, design)][:TURNED]:
             seen.add(points.tobytes())
             if proposal := _proposal(group, first, contour, points, design):

@@ -74,8 +74,7 @@ def with_nodes(contour: MasterContour, numbers: IntArray, places: FloatArray, st
 
 
 def line_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
-    """A line made level: its ends, with or without the handles there; first at that end at whose height more nodes are.
-    """
+    """A line made level: its ends, with or without the handles there; first at the height of more nodes."""
     count, m = contour.points.shape[1], len(contour)
     a = int(starts_of(contour)[segment])
     b = (a + 1) % count

@@ -15,6 +15,7 @@ from ..checks.turns import joint_controls, jumps_of, turns_of
 from ..curves.bezier import cross
 from ..outlines.masters import MasterContour
 from ..types import BoolArray, FloatArray
+from .balance import curvatures_at
 from .joints import EXACT, SMOOTH, Layout
 from .shapes import with_nodes
 from .state import Design
@@ -44,12 +45,13 @@ Option = tuple[int, FloatArray, float]
 """A point, its new places (K, 2), and what a change of its handle's length costs."""
 
 
-def turned_handles(layout: Layout, joints: Sequence[int], design: Design) -> list[FloatArray]:
+def single_handles(layout: Layout, joints: Sequence[int], kind: str, design: Design) -> list[FloatArray]:
     """Points (K, N, 2) after which each of these joints may be smooth; that which fits the curves best comes first."""
     if len(joints) > MOST:
         return []
     m = len(layout.degrees)
-    options = [[None, *_options(layout, joint, design.step)] for joint in joints]
+    ways = _turned if kind == "kink" else _slid
+    options = [[None, *ways(layout, joint, design.step)] for joint in joints]
     near = np.array(sorted({(joint + k) % m for joint in joints for k in (-1, 0, 1)}))
     curved = (layout.degrees[near] > 1) & (layout.degrees[near - 1] > 1)
     weights, em = np.where(np.isin(near, joints), 1.0, HALF) * curved, np.full(len(near), design.em)
@@ -59,17 +61,21 @@ def turned_handles(layout: Layout, joints: Sequence[int], design: Design) -> lis
         if not moves or len(moves) < sum(option is not None for option in chosen):
             continue
         points = layout.points.copy()
-        numbers, places = with_nodes(layout.contour, np.array([*moves]), np.stack([*moves.values()], axis=1), design.step)
+        numbers, places = with_nodes(
+            layout.contour, np.array([*moves]), np.stack([*moves.values()], axis=1), design.step
+        )
         points[:, numbers] = places
         controls = joint_controls(MasterContour(points, layout.degrees))[:, near]
-        cost = TURN * np.radians(np.nan_to_num(np.abs(turns_of(controls)), nan=SMOOTH)) + weights * jumps_of(controls, em)
+        cost = TURN * np.radians(np.nan_to_num(np.abs(turns_of(controls)), nan=SMOOTH)) + weights * jumps_of(
+            controls, em
+        )
         cost = np.minimum(cost, TURN * np.radians(SMOOTH)).sum(axis=1).mean()
         other = sum(POINT + option[2] for option in chosen if option is not None)
         found.append((float(cost) + other, points))
     return [points for _, points in sorted(found, key=lambda each: each[0])]
 
 
-def _options(layout: Layout, joint: int, step: float) -> Iterator[Option]:
+def _turned(layout: Layout, joint: int, step: float) -> Iterator[Option]:
     """Ways to turn one handle at a joint: about its node, or to where it meets the line of the other end, too."""
     m, node = len(layout.degrees), layout.points[:, layout.starts[joint]]
     for side in (0, 1):
@@ -96,9 +102,24 @@ def _options(layout: Layout, joint: int, step: float) -> Iterator[Option]:
                 yield int(number), places, SLIDE * float(np.abs(each / length - 1).max())
 
 
+def _slid(layout: Layout, joint: int, step: float) -> Iterator[Option]:
+    """Ways to slide the end of one handle along it, until curvatures meet at a joint."""
+    node, around = layout.points[:, layout.starts[joint]], layout.points[:, layout.around(joint)]
+    ends = curvatures_at(around)  # (2, K)
+    for side in (0, 1):
+        number, old = layout.handles[joint, side], layout.points[:, layout.handles[joint, side]]
+        length = np.hypot(*(old - node).T)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            shares = np.sqrt(ends[side] / ends[1 - side])
+        if layout.degrees[joint - 1 + side] == 3 and np.isfinite(shares).all() and (shares > 0).all():
+            way = (old - node) / length[:, None]
+            yield int(number), _on_grid(old, node, way, shares * length, layout.frozen[:, number], step, False), 0.0
+
+
 def _on_grid(
-    old: FloatArray, node: FloatArray, way: FloatArray, length: FloatArray, frozen: BoolArray, step: float
-) -> FloatArray:
+    old: FloatArray, node: FloatArray, way: FloatArray, length: FloatArray, frozen: BoolArray, step: float,
+    keep: bool = True,
+) -> FloatArray:  # fmt: skip
     """(K, 2) places on the grid near so much along the way from nodes; the old ones where those are as good.
 
     ``frozen``: (K, 2) coordinates that stay.
@@ -109,5 +130,7 @@ def _on_grid(
     off = tried - best
     prices = cross(off, way) ** 2 + ALONG**2 * (off * way).sum(axis=-1) ** 2
     places = np.take_along_axis(tried, prices.argmin(axis=0)[None, :, None], axis=0)[0]
+    if not keep:
+        return places
     kept = np.abs(cross(old - node, way)) <= np.abs(cross(places - node, way)) + EXACT
     return np.where(kept[:, None], old, places)

@@ -97,7 +97,7 @@ class State:
         """The same for glyphs of one source, which takes less time for each."""
         axes, em = glyphs[0].axes, glyphs[0].metrics.units_per_em
         if axes:
-            rows, _ = on_axes(glyphs, {}, [axis.tag for axis in axes], STEPS, thresholds, outer)
+            rows, _ = on_axes(glyphs, {}, [axis.tag for axis in axes], STEPS, thresholds, outer, True)
         else:
             rows = measured([each.master(0).contours for each in glyphs], thresholds, em, outer)
         return [cls(rows.chosen(np.flatnonzero(rows.glyphs == number))) for number in range(len(glyphs))]

@@ -74,7 +74,11 @@ class MasterContour:
 
     def cubics(self) -> FloatArray:
         """(K, m, 4, 2) all segments as cubic Béziers."""
-        return np.stack([Contour(points, self.degrees).cubics() for points in self.points])
+        n, degrees, starts = self.points.shape[1], self.degrees[:, None], np.cumsum(self.degrees) - self.degrees
+        a, p, q, b = (self.points[:, each % n] for each in (starts, starts + 1, starts + 2, starts + self.degrees))
+        first = np.where(degrees == 3, p, np.where(degrees == 2, a + (p - a) * (2 / 3), a + (b - a) / 3))
+        last = np.where(degrees == 3, q, np.where(degrees == 2, b + (p - b) * (2 / 3), b + (a - b) / 3))
+        return np.stack([a, first, last, b], axis=2)
 
     def mixed(self, weights: FloatArray) -> Contour:
         """The contour with (K,) weights of the masters."""

@@ -51,13 +51,15 @@ class MendJob(Job[Head, list[Mended]]):
     outer: int
 
     chunk = 8
-    budget = 1.0
+    budget = 20_000
 
     def item(self, task: Head) -> Item | Exception:
         """A glyph in all its masters, with the contours that it does not draw itself."""
         (source,) = sources(self.place)
         masters = source.masters(task[0])
-        return LIMITS.error_of(sum(map(len, masters.contours))) or Item((masters, into_of(source, masters)))
+        points = sum(contour.points.shape[1] for contour in masters.contours)
+        error = LIMITS.error_of(sum(map(len, masters.contours)))
+        return error or Item((masters, into_of(source, masters)), len(masters) * points)
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""
