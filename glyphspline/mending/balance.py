@@ -15,8 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiled import compiled
 from ..curves.bezier import cross
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import BoolArray, ComplexArray, FloatArray, IntArray
 from .grid import LEAST, Rounding, settle
 from .joints import EXACT, Layout
 from .state import Design
@@ -72,13 +73,6 @@ class Bound(NamedTuple):
     per: FloatArray
 
 
-def values_at(points: FloatArray, is_jump: BoolArray) -> FloatArray:
-    """(B, …) turns in radians, or jumps of curvature, at joints (B, …, 5, 2)."""
-    found = turns_at(points)
-    found[is_jump] = jumps_at(points[is_jump])
-    return found
-
-
 def turns_at(points: FloatArray) -> FloatArray:
     """(…,) radians by which joints (…, 5, 2) turn."""
     a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
@@ -86,26 +80,9 @@ def turns_at(points: FloatArray) -> FloatArray:
     return turns
 
 
-@np.errstate(invalid="ignore")
-def turn_slopes(points: FloatArray) -> FloatArray:
-    """(…, 5, 2) derivatives of :func:`turns_at`: not of handles without length."""
-    a, b = points[..., 2, :] - points[..., 1, :], points[..., 3, :] - points[..., 2, :]
-    by_a, by_b = (_turned(v) / (v * v).sum(axis=-1, keepdims=True) for v in (a, b))
-    none = np.zeros_like(a)
-    return np.stack([none, by_a, -by_a - by_b, by_b, none], axis=-2)
-
-
 def jumps_at(points: FloatArray) -> FloatArray:
     """(…,) by how much curvature is larger behind joints (…, 5, 2) of cubics than before."""
     return _curvature(points[..., 2:, :]) + _curvature(points[..., 2::-1, :])
-
-
-def jump_slopes(points: FloatArray) -> FloatArray:
-    """(…, 5, 2) derivatives of :func:`jumps_at`."""
-    slopes = np.zeros_like(points)
-    slopes[..., 2::-1, :] = _curvature_slopes(points[..., 2::-1, :])
-    slopes[..., 2:, :] += _curvature_slopes(points[..., 2:, :])
-    return slopes
 
 
 def curvatures_at(points: FloatArray) -> FloatArray:
@@ -126,14 +103,98 @@ def _curvature(points: FloatArray) -> FloatArray:
     return value
 
 
-@np.errstate(divide="ignore", invalid="ignore")
-def _curvature_slopes(points: FloatArray) -> FloatArray:
-    """(…, 3, 2) derivatives of :func:`_curvature`."""
-    a, c = points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 1, :]
-    size = np.hypot(a[..., 0], a[..., 1])[..., None]
-    by_a = -2 / 3 * _turned(c) / size**3 - 3 * _curvature(points)[..., None] * a / size**2
-    by_c = 2 / 3 * _turned(a) / size**3
-    return np.stack([-by_a, by_a - by_c, by_c], axis=-2)
+@compiled
+def bounded(
+    points: ComplexArray, joints: IntArray, is_jump: BoolArray, weights: FloatArray, per: FloatArray
+) -> tuple[FloatArray, ComplexArray]:
+    """(B, L) turns in radians and jumps, as shares of ``per``, and (B, L, 5) the points around joints at each place.
+
+    Args:
+        points: (K, N). joints: (B, 5) numbers of points. weights: (L, K) of the masters at the places. per: (B, L).
+    """
+    values, around = np.empty(per.shape), np.zeros((*per.shape, 5), dtype=np.complex128)
+    for b in range(len(joints)):
+        for m in range(len(weights)):
+            for k in range(len(points)):
+                if weights[m, k] != 0:
+                    for i in range(5):
+                        around[b, m, i] += weights[m, k] * points[k, joints[b, i]]
+            at = around[b, m]
+            if is_jump[b]:
+                value = bend(at[2], at[3], at[4]) + bend(at[2], at[1], at[0])
+            else:
+                both = (at[2] - at[1]).conjugate() * (at[3] - at[2])
+                value = np.arctan2(both.imag, both.real)
+            values[b, m] = value / per[b, m]
+    return values, around
+
+
+@compiled
+def bend(p: complex, q: complex, r: complex) -> float:
+    """Curvature where a cubic begins, from its first three points."""
+    own = q - p
+    return 2 / 3 * (own.conjugate() * (r - q)).imag / abs(own) ** 3
+
+
+@compiled
+def slopes_of(
+    around: ComplexArray, which: IntArray, place: IntArray, scale: FloatArray, joints: IntArray, is_jump: BoolArray,
+    weights: FloatArray, spread: FloatArray,
+) -> FloatArray:  # fmt: skip
+    """(R, K, 2 S) derivatives of what :func:`bounded` has, by moves of points, times a scale (R,).
+
+    Args:
+        around: (B, L, 5). which, place: (R,) numbers of bounds and places. spread: (N, S).
+    """
+    count = spread.shape[1]
+    found, slope = np.zeros((len(which), weights.shape[1], 2 * count)), np.empty(5, dtype=np.complex128)
+    own = np.empty(count, dtype=np.complex128)
+    for row in range(len(which)):
+        b, at = which[row], around[which[row], place[row]]
+        slope[:] = 0
+        if is_jump[b]:
+            for way in (-1, 1):
+                a, c = at[2 + way] - at[2], at[2 + 2 * way] - at[2 + way]
+                size = abs(a)
+                by_c = 2 / 3 * 1j * a / size**3
+                by_a = -2 / 3 * 1j * c / size**3 - 3 * bend(at[2], at[2 + way], at[2 + 2 * way]) * a / size**2
+                slope[2] -= by_a
+                slope[2 + way] += by_a - by_c
+                slope[2 + 2 * way] += by_c
+        else:
+            a, c = at[2] - at[1], at[3] - at[2]
+            slope[1], slope[3] = 1j * a / (a * a.conjugate()).real, 1j * c / (c * c.conjugate()).real
+            slope[2] = -slope[1] - slope[3]
+        own[:] = 0
+        for i in range(5):
+            for s in range(count):
+                own[s] += scale[row] * spread[joints[b, i], s] * slope[i]
+        for k in range(weights.shape[1]):
+            w = weights[place[row], k]
+            if w != 0:
+                for s in range(count):
+                    found[row, k, 2 * s], found[row, k, 2 * s + 1] = w * own[s].real, w * own[s].imag
+    return found
+
+
+class _Arrays(NamedTuple):
+    """Several :class:`Bound`, attribute by attribute."""
+
+    joints: IntArray
+    is_jump: BoolArray
+    most: FloatArray
+    per: FloatArray
+
+    @classmethod
+    def of(cls, bounds: Sequence[Bound]) -> _Arrays:
+        """Put them together."""
+        _, joints, is_jump, most, per = zip(*bounds, strict=True)
+        return cls(np.array(joints), np.array(is_jump), np.array(most), np.array(per))
+
+
+def _complex(points: FloatArray) -> ComplexArray:
+    """(…,) points as complex numbers, from (…, 2)."""
+    return np.ascontiguousarray(points).view(np.complex128)[..., 0]
 
 
 class Stretch:
@@ -148,6 +209,7 @@ class Stretch:
 
     def __init__(self, layout: Layout, free: Sequence[int], design: Design) -> None:
         self.layout, self.free, self.design = layout, np.array(sorted(set(free))), design
+        self.places = np.ascontiguousarray(design.places)
         count = layout.points.shape[1]
         self.spread = np.zeros((count, len(self.free)))
         self.spread[self.free, np.arange(len(self.free))] = 1.0
@@ -201,35 +263,29 @@ class Stretch:
 
     def excess(self, x: FloatArray, bounds: Sequence[Bound]) -> float:
         """How many times what they may be turns, jumps and moves of samples are at most."""
-        values, _ = self._values(x, bounds)
-        most = np.maximum(np.array([bound.most for bound in bounds]), LEAST)
+        of = _Arrays.of(bounds)
+        values, _ = self._values(x, of)
+        most = np.maximum(of.most, LEAST)
         far = np.abs(self.moves(x)).max() / self.design.tolerance
         return float(max(far, (np.abs(values) / most).max(initial=0.0)))
 
-    def _values(self, x: FloatArray, bounds: Sequence[Bound]) -> tuple[FloatArray, FloatArray]:
-        """(B, L) what is bounded after moves, and (B, L, 5, 2) the points around each joint at each place."""
-        around = self.places_of(x)[:, np.array([bound.points for bound in bounds], dtype=np.int64).reshape(-1, 5)]
-        at = np.swapaxes(np.tensordot(self.design.places, around, axes=1), 0, 1)
-        is_jump = np.array([bound.is_jump for bound in bounds], dtype=np.bool_)
-        per = np.array([bound.per for bound in bounds]).reshape(at.shape[:2])
-        return values_at(at, is_jump) / per, at
+    def _values(self, x: FloatArray, of: _Arrays) -> tuple[FloatArray, ComplexArray]:
+        """(B, L) what is bounded after moves, and (B, L, 5) the points around each joint at each place."""
+        return bounded(_complex(self.places_of(x)), of.joints, of.is_jump, self.places, of.per)
 
     def least(self, bounds: Sequence[Bound], most_move: float) -> FloatArray:
         """(K, S, 2) the least moves that keep the bounds, and curves within the tolerance."""
         from scipy.linalg import solve_triangular
         from scipy.optimize import nnls
 
-        weights = self.design.places
+        of, most = _Arrays.of(bounds), _Arrays.of(bounds).most
         K, size = len(self.inverse), self.inverse.shape[1]
-        x, kept = np.zeros((K, size)), np.zeros((2, len(bounds), len(weights)), dtype=np.bool_)
-        spread = np.swapaxes(self.spread[[bound.points for bound in bounds]], 1, 2)  # (B, S, 5)
-        most, per = np.array([bound.most for bound in bounds]), np.array([bound.per for bound in bounds])
-        is_jump = np.array([bound.is_jump for bound in bounds])
+        x, kept = np.zeros((K, size)), np.zeros((2, *most.shape), dtype=np.bool_)
         far, beyond = np.zeros((2, len(self.samples)), dtype=np.bool_), np.zeros((2, K, size), dtype=np.bool_)
         limit = HELD * self.design.tolerance
         sign = np.array([1.0, -1.0])
         for _ in range(ROUNDS):
-            values, at = self._values(x.reshape(K, -1, 2), bounds)
+            values, at = self._values(x.reshape(K, -1, 2), of)
             moves = self.moves(x)
             over = np.abs(moves).max() - limit, np.abs(x).max() - most_move
             if (np.abs(values) - most).max() < SETTLED and max(over) < SETTLED * limit:
@@ -243,15 +299,11 @@ class Stretch:
                 held.reshape(2, -1)[(value.ravel()[worst] > 0).astype(np.int64), worst] = True
             # Those with sign c + sign J x >= -most, linearised, are A x >= b.
             side, which, place = np.nonzero(kept)
-            joints = at[which, place]
-            slopes = turn_slopes(joints)
-            slopes[is_jump[which]] = jump_slopes(joints[is_jump[which]])
-            slopes = (spread[which] @ slopes).reshape(-1, size)
-            scale = sign[side] / per[which, place]
-            if not (np.isfinite(slopes).all() and np.isfinite(values).all()):
+            scale = sign[side] / of.per[which, place]
+            A = slopes_of(at, which, place, scale, of.joints, of.is_jump, self.places, self.spread)
+            if not (np.isfinite(A).all() and np.isfinite(values).all()):
                 break  # a handle lost its length
-            A = weights[place][:, :, None] * (slopes * scale[:, None])[:, None]  # (R, K, 2 S)
-            b = (A * x).sum(axis=(1, 2)) - sign[side] * values[which, place] - most[which, place]
+            b = A.reshape(len(A), -1) @ x.ravel() - sign[side] * values[which, place] - most[which, place]
             side, sample = np.nonzero(far)
             of_curves = sign[side, None, None] * self.samples[sample]
             side, k, which = np.nonzero(beyond)
@@ -259,7 +311,7 @@ class Stretch:
             of_points[np.arange(len(k)), k, which] = sign[side]
             A = np.concatenate([A, of_curves, of_points])
             b = np.concatenate([b, np.full(len(of_curves), -limit), np.full(len(of_points), -most_move)])
-            R = (self.inverse @ A[..., None])[..., 0]
+            R = np.swapaxes(np.swapaxes(A, 0, 1) @ self.inverse, 0, 1)  # of symmetric matrices
             G = A.reshape(len(A), -1) @ R.reshape(len(A), -1).T
             G[np.diag_indices(len(G))] += SOFT * max(np.trace(G), 1e-30)
             L = np.linalg.cholesky(G)
@@ -282,16 +334,12 @@ class Stretch:
         near = np.where(self.frozen, 0.0, np.round((old + x) / design.step) * design.step - old)
         number = np.full(layout.points.shape[1], -1)
         number[self.free] = np.arange(len(self.free))
-        before, best, points = (
-            np.ascontiguousarray(each).view(np.complex128)[..., 0]
-            for each in (layout.points, self.places_of(x), self.places_of(near))
-        )
+        before, best, points = map(_complex, (layout.points, self.places_of(x), self.places_of(near)))
+        of = _Arrays.of(bounds)
         contiguous = np.ascontiguousarray
         settle(points, Rounding(
             before, best, number, layout.implied, contiguous(self.frozen),
-            np.array([layout.around(joint)[1:4] for joint in self.joints.tolist()]), contiguous(design.places),
-            np.array([bound.points for bound in bounds]).reshape(-1, 5), np.array([bound.is_jump for bound in bounds]),
-            np.array([bound.most for bound in bounds]), np.array([bound.per for bound in bounds]),
+            np.array([layout.around(joint)[1:4] for joint in self.joints.tolist()]), self.places, *of,
             contiguous(self.cost), contiguous(self.samples), LAST * design.tolerance, design.step, most_move,
         ))  # fmt: skip
         return (points - before)[:, self.free, None].view(np.float64)
