@@ -34,7 +34,7 @@
     const xs = around.map(([x]) => x), ys = around.map(([, y]) => y);
     const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
     const half = Math.max(NEAR * em, 0.8 * Math.max(right - left, bottom - top)), x = (left + right) / 2, y = (top + bottom) / 2;
-    const picture = card.querySelector("svg"), scale = GS.scaleNear(old, em, [x, y, half]), gain = Math.min(6, half / (0.09 * em));
+    const picture = card.querySelector("svg"), scale = GS.scaleNear(old, em, [x, y, half]), gain = Math.min(2, half / (0.09 * em));
     const combs = scale > 0 ? [[old, "source-comb"], [now, "comb"]].map(([of, name]) => GS.comb(of, em, scale, { name, gain })) : [];
     const same = old.flat(2).length === now.flat(2).length ? old.flat(2).map((p, k) => [p, now.flat(2)[k]]) : [];
     const moves = same.filter(([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]) > 1e-3);
