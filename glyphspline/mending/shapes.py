@@ -12,9 +12,11 @@ from itertools import product
 
 import numpy as np
 
+from ..checks.turns import joint_controls, turns_of
 from ..curves.bezier import cross
 from ..outlines.masters import MasterContour
 from ..types import FloatArray, IntArray
+from .joints import SMOOTH
 
 Move = tuple[IntArray, FloatArray]
 
@@ -29,6 +31,15 @@ WITHIN = (1.0, 0.97, 0.93, 0.85)
 
 ROUND = 0.5523
 """The share of a quarter of a circle, for two handles that are both too long."""
+
+PARTS = (0.5523, 0.65, 0.75, 0.85)
+"""Other shares of the way to that place."""
+
+STEPS = 16
+"""Steps in which lengths of both handles are found at which curvatures meet, as each depends on the other."""
+
+LEAST = 0.5
+"""Share that such a length has at least of what the other handle's share makes of it."""
 
 OUT = (1.0, 0.5, 0.0)
 """How far a point goes out to the extremum beside it: all of the way, half of it, or only its handles are levelled."""
@@ -153,7 +164,8 @@ def extremum_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
 
 
 def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
-    """Handles cut to the other one's share of the way to where both meet; or to that place, or to the other end.
+    """Handles cut so that curvature meets the neighbour's; to the other one's share of the way to where both meet; to
+    others of it; to that place, or to the other end.
 
     In masters where they do not reach as far they stay.
     """
@@ -174,12 +186,42 @@ def handle_moves(contour: MasterContour, segment: int) -> Iterator[Move]:
     if both.any():
         own = np.where(both[:, None], 1 / meets, 1.0)
         other = np.where(own[:, ::-1] < 1, own[:, ::-1], ROUND)
-        yield numbers[1:3], cut(points, np.where(own > 1, other / own, 1.0))
+        alike = np.where(own > 1, other / own, 1.0)
+        bent = alike_curved(contour, segment, points, alike)
+        if bent is not None:
+            yield numbers[1:3], cut(points, bent)
+        yield numbers[1:3], cut(points, alike)
+        for share in PARTS:
+            yield numbers[1:3], cut(points, np.where(own > 1, share / own, 1.0))
     shares = np.where((ends > 0) & (ends < shares), ends, shares)
     if (shares >= 1).all():
         return
     for within in WITHIN:
         yield numbers[1:3], cut(points, np.where(shares < 1, within * shares, 1.0))
+
+
+def alike_curved(contour: MasterContour, segment: int, points: FloatArray, shares: FloatArray) -> FloatArray | None:
+    """(K, 2) shares of handles of a cubic (K, 4, 2), from those given, at which curvatures meet its neighbours'.
+
+    Only handles that are cut in all masters, at smooth joints with a cubic, get others; None if there are none.
+    """
+    m, shares = len(contour), shares.copy()
+    controls, ends = joint_controls(contour)[:, [segment, (segment + 1) % m]], points[:, [0, 3]]
+    handles, turns = points[:, [1, 2]] - ends, np.abs(turns_of(controls)).max(axis=0)
+    beside = contour.degrees[[segment - 1, (segment + 1) % m]] == 3
+    chosen = [end for end in (0, 1) if beside[end] and turns[end] < SMOOTH and (shares[:, end] < 1).all()]
+    first = shares.copy()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(STEPS):
+            for end in chosen:
+                neighbour, own = controls[:, end, end], handles[:, end]
+                a, c = (neighbour[:, k] - neighbour[:, 0] for k in (1, 2))
+                bend = 2 / 3 * np.abs(cross(a, c)) / np.hypot(*a.T) ** 3
+                way = ends[:, 1 - end] + shares[:, [1 - end]] * handles[:, 1 - end] - ends[:, end]
+                size = np.hypot(*own.T)
+                shares[:, end] = np.sqrt(2 / 3 * np.abs(cross(own, way)) / size / bend) / size
+    fits = np.isfinite(shares).all() and (shares <= 1).all() and (shares > LEAST * first).all()
+    return shares if chosen and fits else None
 
 
 def cut(points: FloatArray, shares: FloatArray) -> FloatArray:

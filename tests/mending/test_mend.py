@@ -20,7 +20,9 @@ import glyphspline as gs
 from glyphspline.checks.finding import Finding
 from glyphspline.checks.kinds import THRESHOLDS
 from glyphspline.cli.commands import app
+from glyphspline.curves.bezier import split
 from glyphspline.mending.joints import Layout
+from glyphspline.mending.shapes import with_nodes
 from glyphspline.mending.state import Design, distances
 from glyphspline.outlines.masters import DesignAxis, MasterContour
 from glyphspline.outlines.outline import Contour
@@ -96,6 +98,59 @@ def test_a_level_handle_stays_level() -> None:
     assert change.after == 0
     assert change.before > 3
     assert not [one for one in gs.check(mended) if one.kind == "kink"]
+
+
+ARC = [(0, 0), (0, 331), (269, 600), (600, 600), (931, 600), (1200, 331), (1200, 0), (600, -100)]
+
+
+@pytest.mark.parametrize("handle", [2, 4, 8, 10])
+@pytest.mark.parametrize("degrees", [4.0, -7.0])
+def test_of_two_handles_the_one_that_was_moved_comes_back(handle: int, degrees: float) -> None:
+    quarters = [np.array(ARC[start : start + 4], dtype=np.float64) for start in (0, 3)]
+    halves = [np.round(part) for quarter in quarters for part in split(quarter, 0.5)]
+    clean = Contour.from_segments([*halves, np.array(ARC[6:8]), np.array([ARC[7], ARC[0]])])
+    assert not gs.check(gs.Outline("o", contours=[clean]))
+    points, node = clean.points.copy(), clean.points[3 if handle < 6 else 9]
+    way = complex(*(points[handle] - node)) * np.exp(1j * np.radians(degrees))
+    points[handle] = np.round(node + np.array([way.real, way.imag]))
+    outline = gs.Outline("o", contours=[Contour(points, clean.degrees)])
+    mended, (change,) = gs.mend(outline, tolerance=12)
+    assert change.is_mended
+    assert np.abs(mended.contours[0].points - clean.points).max() <= 1
+    assert [number for _, number, _, _ in change.moves] == [handle]
+
+
+def test_a_node_of_quadratics_follows_a_control_point_that_is_levelled() -> None:
+    clean = np.array([(0, 0), (0, 70), (22.5, 101.5), (45, 133), (99, 133), (200, 133), (200, 0)])
+    points = np.round(clean)  # as a font stores it where the node is not midway any more
+    points[1] = 3, 70
+    contour = MasterContour(points[None], np.array([2, 2, 2, 1]))
+    a, b, c = clean[1], clean[2], clean[3]
+    numbers, places = with_nodes(contour, np.array([1]), clean[None, [1]], 1.0)
+    assert numbers.tolist() == [1, 2]
+    before, behind = places[0, 1] - a, c - places[0, 1]
+    turn = np.degrees(np.arctan2(before[0] * behind[1] - before[1] * behind[0], before @ behind))
+    assert abs(turn) < 1
+    assert (places == np.round(places)).all()
+    assert np.abs(places[0, 1] - b).max() <= 1
+
+
+def test_a_slanted_line_goes_to_the_height_of_more_nodes() -> None:
+    shape = [(0, 0), (0, 500), (300, 502), (300, 300), (600, 300), (600, 502), (900, 502), (900, 0)]
+    outline = gs.Outline("u", contours=[Contour(np.array(shape), np.ones(8, dtype=np.int64))])
+    mended, (change,) = gs.mend(outline, ["slanted"], 4)
+    assert change.moves == ((0, 1, (0.0, 500.0), (0.0, 502.0)),)
+    assert mended.contours[0].points[1].tolist() == [0, 502]
+
+
+def test_handles_that_cross_are_cut_to_where_curvatures_meet() -> None:
+    clean = [(0, 0), (0, 166), (134, 300), (300, 300), (466, 300), (600, 166), (600, 0)]
+    shape = [*clean]
+    shape[4] = (675, 300)
+    outline = gs.Outline("n", contours=[Contour(np.array(shape), np.array([3, 3, 1]))])
+    mended, (change,) = gs.mend(outline, ["handles"], 80)
+    assert change.is_mended
+    assert np.abs(mended.contours[0].points - clean).max() <= 1
 
 
 def test_kinks_between_masters_are_gone_everywhere() -> None:
