@@ -17,7 +17,7 @@ from .curves.curvature import comb as curvature_comb
 from .curves.curvature import robust_scale
 from .fitting.results import BOUNDS, QUANTITIES, GlyphResult, Measures, as_glyph, shown
 from .interpolation.result import Interpolation
-from .outlines.contour_arrays import Polylines
+from .outlines.contour_arrays import polylines
 from .outlines.outline import Contour, Outline
 from .types import FloatArray, rounded_up
 
@@ -89,11 +89,8 @@ def curve_svg(curve: Spline | Interpolation) -> str:
     spline = _spline_of(curve)
     if spline.control_points.shape[1] > 2:
         return _space_svg(curve)
-    control, marks, cubics = spline.control_points, _marks(curve), _cubics(spline)
-    strokes, comb = [], _comb_of(cubics)
-    for colour, teeth in comb.items():
-        ends = np.array([0, *range(2, 2 * len(teeth) + 1, 2)])
-        strokes.append((colour, Polylines(teeth.reshape(-1, 2), ends, np.zeros(len(teeth), dtype=np.bool_))))
+    control, marks, comb = spline.control_points, _marks(curve), _comb_of(_cubics(spline))
+    strokes = [(colour, polylines([*teeth], [False] * len(teeth))) for colour, teeth in comb.items()]
     every = np.concatenate([control, *marks.values(), *(lines.points for _, lines in strokes)])
     (left, bottom), (right, top) = every.min(axis=0), every.max(axis=0)
     extent = max(float(right - left), float(top - bottom)) or 1.0

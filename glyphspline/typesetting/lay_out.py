@@ -149,9 +149,7 @@ def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list
         if setting.vertical or setting.features:
             what = "vertical text" if setting.vertical else "features"
             raise OptionError(f"{source.path}: {what} needs a font file: {source.format} has no tables for shaping")
-        plain = PlainShaper(source, scale)
-        plain.prepare(text)
-        shapers.append(plain)
+        shapers.append(PlainShaper(source, scale, text))
         notes.append(f"{source.path.name} is not shaped: no kerning, ligatures or joined letters in {source.format}")
     return shapers, notes
 

@@ -152,7 +152,17 @@ class HarfBuzzShaper(Shaper):
 
 
 class PlainShaper(Shaper):
-    """A source without tables for shaping, such as a UFO: a glyph a character, one after the other."""
+    """A source without tables for shaping, such as a UFO: a glyph a character, one after the other.
+
+    Args:
+        text: all that is going to be shaped.
+    """
+
+    def __init__(self, source: Source, scale: float, text: str) -> None:
+        super().__init__(source, scale)
+        gids = sorted({self._glyph(ord(character)) for character in text} - {-1})
+        outlines = source.outlines(gids, errors="return")
+        self._advances = {gid: getattr(outline, "advance", 0.0) for gid, outline in zip(gids, outlines, strict=True)}
 
     def shape(self, codes: Sequence[int], run: Run, direction: str, origin: int) -> Shaped:
         """See :meth:`Shaper.shape`."""
@@ -162,12 +172,6 @@ class PlainShaper(Shaper):
         advance, offset = np.zeros((2, len(glyph), 2))
         advance[:, 0] = [self._advances[number] * self.scale for number in glyph.tolist()]
         return Shaped(glyph, cluster, advance, offset, np.zeros(len(glyph), dtype=np.bool_))
-
-    def prepare(self, text: str) -> None:
-        """Read the advances of all glyphs of a text."""
-        gids = sorted({self._glyph(ord(character)) for character in text} - {-1})
-        outlines = self.source.outlines(gids, errors="return")
-        self._advances = {gid: getattr(outline, "advance", 0.0) for gid, outline in zip(gids, outlines, strict=True)}
 
     def _glyph(self, code: int) -> int:
         return self.source.gids.get(self._name(code) or ".notdef", -1)

@@ -46,15 +46,15 @@ class Quadratics:
         masters = redrawn.masters
         if name in self._counted:
             raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
-        known, given = numbers_of(masters), self._gvar.variations(name)
+        record = Record(self._font, name, masters, self._gvar)
+        known, given, shift = numbers_of(masters), record.given, record.lefts
         keys = [region_key(self._gvar.region(variation)) for variation in given]
         for key, variation in zip(keys, given, strict=True):
             moves = any(delta not in (None, (0, 0)) for delta in variation.coordinates[:-PHANTOMS])
             if key and key not in known and moves:
                 raise GlyphsplineError("its variations have a region that its masters have not", glyph=name)
-        owns, shift = self.own(name, masters)
         compared, wanted = bool(redrawn.bounds), redrawn.bounds or (0.0,) * len(redrawn.contours)
-        owns = owns if compared else {}
+        owns = own_contours(record) if compared else {}
         if redrawn.tally is None:
             redrawn = in_quadratics(redrawn, owns, shift, tolerance)
         kept = {

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...outlines.contour_arrays import ContourArrays, Polylines
+from ...outlines.contour_arrays import ContourArrays, Polylines, polylines
 from ...outlines.outline import Contour, Contours
 from ...types import BoolArray, FloatArray, IntArray
 
@@ -52,8 +52,7 @@ def path_data(contours: Iterable[Contour], precision: int) -> str:
 
 def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -> str:
     """Points (k, 2) joined by straight lines, as SVG path data."""
-    points = np.ascontiguousarray(points, dtype=np.float64)
-    return polylines_data(Polylines(points, np.array([0, len(points)]), np.array([closed])), precision)[0].text
+    return polylines_data(polylines([points], [closed]), precision)[0].text
 
 
 def dots_data(points: FloatArray, precision: int) -> str:
