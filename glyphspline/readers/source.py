@@ -6,6 +6,7 @@ import hashlib
 import logging
 import math
 from abc import ABC, abstractmethod
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cached_property, partial
@@ -235,10 +236,10 @@ class Source(ABC):
     @cached_property
     def unicodes(self) -> dict[str, tuple[int, ...]]:
         """Glyph name to its code points, ascending, of glyphs that have some."""
-        codes: dict[str, tuple[int, ...]] = {}
+        codes = defaultdict(list)
         for code, name in sorted(self.cmap.items()):
-            codes[name] = (*codes[name], code) if name in codes else (code,)
-        return codes
+            codes[name].append(code)  # of one glyph there may be a million
+        return {name: tuple(of_name) for name, of_name in codes.items()}
 
     def select(
         self,
