@@ -22,7 +22,7 @@ from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .fewer import EDITED, Edited
 from .kinks import smoothed
-from .shapes import shape_moves, starts_of
+from .shapes import moved, shape_moves, starts_of
 from .state import Change, Design, Into, Key, State, distances
 
 PER_EM = 1e-3
@@ -254,7 +254,7 @@ class _Fault:
         fault = cls(change, contour, [], fixed)
         if fixed is None:
             for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
-                bound = float(distances(origin, _moved(contour, numbers, places), design).max())
+                bound = float(distances(origin, moved(contour, numbers, places), design).max())
                 fault.tries.append(_Try(numbers, places, bound))
             if change.kind not in ("handles", "slanted"):  # whose moves come in the order in which they are liked
                 fault.tries.sort(key=lambda each: each.distance)
@@ -326,27 +326,13 @@ def _advance(
     return given_up
 
 
-def _moved(contour: MasterContour, numbers: IntArray, new: FloatArray) -> MasterContour:
-    """A contour with other places of some points; one midway between two control points of quadratics stays so."""
-    points = contour.points.copy()
-    points[:, numbers] = new
-    if (contour.degrees == 2).any():
-        starts = np.cumsum(contour.degrees) - contour.degrees
-        at = starts[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
-        behind = (at + 1) % points.shape[1]
-        implied = (contour.points[:, at - 1] + contour.points[:, behind] == 2 * contour.points[:, at]).all(axis=(0, 2))
-        at, behind = at[implied], behind[implied]
-        points[:, at] = (points[:, at - 1] + points[:, behind]) / 2
-    return MasterContour(points, contour.degrees)
-
-
 def _with(masters: Masters, faults: Sequence[_Fault]) -> Masters:
     """The glyph with the first move of every finding."""
     contours = list(masters.contours)
     for fault in faults:
         if fault.is_moved:
             own = contours[fault.change.contour]
-            contours[fault.change.contour] = _moved(own, fault.tries[0].numbers, fault.tries[0].places)
+            contours[fault.change.contour] = moved(own, fault.tries[0].numbers, fault.tries[0].places)
     return replace(masters, contours=contours)
 
 

@@ -63,27 +63,38 @@ def shape_moves(kind: str, contour: MasterContour, segment: int, step: float) ->
 
 
 def with_nodes(contour: MasterContour, numbers: IntArray, places: FloatArray, step: float) -> Move:
-    """A move with that of nodes of quadratics beside it: those midway between their control points stay so, as fonts
-    imply them, and those about midway go where, on the grid, they turn least."""
+    """A move with that of nodes of quadratics beside it: those about midway between their control points go where, on
+    the grid, they turn least."""
     starts, count = starts_of(contour), contour.points.shape[1]
     between = starts[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
     beside = np.concatenate([numbers - 1, numbers + 1]) % count
     nodes = np.setdiff1d(np.intersect1d(between, beside), numbers)
     if not len(nodes):
         return numbers, places
-    behind, points = (nodes + 1) % count, contour.points.copy()
-    implied = (points[:, nodes - 1] + points[:, behind] == 2 * points[:, nodes]).all(axis=(0, 2))
+    points = contour.points.copy()
     points[:, numbers] = places
-    a, b, old = points[:, nodes - 1], points[:, behind], points[:, nodes]
+    a, b, old = points[:, nodes - 1], points[:, (nodes + 1) % count], points[:, nodes]
     middle = (a + b) / 2
-    near = implied | (np.abs(old - middle).max(axis=2) <= step).all(axis=0) & (old != middle).any(axis=(0, 2))
+    near = (np.abs(old - middle).max(axis=2) <= step).all(axis=0) & (old != middle).any(axis=(0, 2))
     a, b, old, middle, nodes = a[:, near], b[:, near], old[:, near], middle[:, near], nodes[near]
     around = step * np.stack(np.meshgrid(*[np.arange(-1.0, 2.0)] * 2), axis=-1).reshape(-1, 1, 1, 2)
     tried = np.concatenate([old[None], np.round(middle / step) * step + around])  # (T, K, n, 2)
     off = np.abs(cross(tried - a, b - a)) + np.where(np.abs(tried - middle).max(axis=3) <= step, 0.0, np.inf)
     best = np.take_along_axis(tried, off.argmin(axis=0)[None, ..., None], axis=0)[0]
-    best = np.where(implied[near][:, None], middle, best)
     return np.append(numbers, nodes), np.concatenate([places, best], axis=1)
+
+
+def moved(contour: MasterContour, numbers: IntArray, places: FloatArray) -> MasterContour:
+    """A contour after a move; a node midway between two control points of quadratics stays so, as fonts imply it."""
+    points = contour.points.copy()
+    points[:, numbers] = places
+    if (contour.degrees == 2).any():
+        at = starts_of(contour)[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
+        behind = (at + 1) % points.shape[1]
+        implied = (contour.points[:, at - 1] + contour.points[:, behind] == 2 * contour.points[:, at]).all(axis=(0, 2))
+        at, behind = at[implied], behind[implied]
+        points[:, at] = (points[:, at - 1] + points[:, behind]) / 2
+    return MasterContour(points, contour.degrees)
 
 
 def line_moves(contour: MasterContour, segment: int) -> Iterator[Move]:

@@ -13,11 +13,10 @@ import numpy as np
 
 from ..checks.turns import joint_controls, jumps_of, turns_of
 from ..curves.bezier import cross
-from ..outlines.masters import MasterContour
 from ..types import BoolArray, FloatArray
 from .balance import curvatures_at
 from .joints import EXACT, SMOOTH, Layout
-from .shapes import with_nodes
+from .shapes import moved, with_nodes
 from .state import Design
 
 MOST = 3
@@ -60,18 +59,17 @@ def single_handles(layout: Layout, joints: Sequence[int], kind: str, design: Des
         moves = {option[0]: option[1] for option in chosen if option is not None}
         if not moves or len(moves) < sum(option is not None for option in chosen):
             continue
-        points = layout.points.copy()
         numbers, places = with_nodes(
             layout.contour, np.array([*moves]), np.stack([*moves.values()], axis=1), design.step
         )
-        points[:, numbers] = places
-        controls = joint_controls(MasterContour(points, layout.degrees))[:, near]
+        new = moved(layout.contour, numbers, places)
+        controls = joint_controls(new)[:, near]
         cost = TURN * np.radians(np.nan_to_num(np.abs(turns_of(controls)), nan=SMOOTH)) + weights * jumps_of(
             controls, em
         )
         cost = np.minimum(cost, TURN * np.radians(SMOOTH)).sum(axis=1).mean()
         other = sum(POINT + option[2] for option in chosen if option is not None)
-        found.append((float(cost) + other, points))
+        found.append((float(cost) + other, new.points))
     return [points for _, points in sorted(found, key=lambda each: each[0])]
 
 
