@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..checks.segments import end_curvature
 from ..compiled import compiled
 from ..curves.bezier import cross
 from ..types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -121,19 +122,12 @@ def bounded(
                         around[b, m, i] += weights[m, k] * points[k, joints[b, i]]
             at = around[b, m]
             if is_jump[b]:
-                value = bend(at[2], at[3], at[4]) + bend(at[2], at[1], at[0])
+                value = end_curvature(at[2], at[3], at[4]) + end_curvature(at[2], at[1], at[0])
             else:
                 both = (at[2] - at[1]).conjugate() * (at[3] - at[2])
                 value = np.arctan2(both.imag, both.real)
             values[b, m] = value / per[b, m]
     return values, around
-
-
-@compiled
-def bend(p: complex, q: complex, r: complex) -> float:
-    """Curvature where a cubic begins, from its first three points."""
-    own = q - p
-    return 2 / 3 * (own.conjugate() * (r - q)).imag / abs(own) ** 3
 
 
 @compiled
@@ -157,7 +151,7 @@ def slopes_of(
                 a, c = at[2 + way] - at[2], at[2 + 2 * way] - at[2 + way]
                 size = abs(a)
                 by_c = 2 / 3 * 1j * a / size**3
-                by_a = -2 / 3 * 1j * c / size**3 - 3 * bend(at[2], at[2 + way], at[2 + 2 * way]) * a / size**2
+                by_a = -2 / 3 * 1j * c / size**3 - 3 * end_curvature(at[2], at[2 + way], at[2 + 2 * way]) * a / size**2
                 slope[2] -= by_a
                 slope[2 + way] += by_a - by_c
                 slope[2 + 2 * way] += by_c
