@@ -18,7 +18,7 @@ from .check import measured
 from .finding import Measured
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
 from .kinks import AxisKinks, kinks_along
-from .segments import arc, rounding_turn
+from .segments import arc, rounding_turns
 from .turns import joint_controls, turns_of
 
 OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
@@ -114,22 +114,21 @@ def kinks_of(
     parts += [_off_axes(g, masters, location, axes, thresholds.kink) for g, masters in enumerate(glyphs)]
     rows = Measured.joined(parts)
     height = thresholds.kink_height * glyphs[0].metrics.units_per_em / 1000
-    kept, controls = [], dict[tuple[int, int], FloatArray]()
-    for k, (g, contour, joint) in enumerate(joints_of(rows)):
-        turn, made = rows.numbers[k, 1:3]
-        of_contour = glyphs[g].contours[contour]
-        degrees = of_contour.degrees[[joint - 1, joint]]
-        meant = (degrees == 1).all() and turn - made >= thresholds.kink
-        if (g, contour) not in controls:
-            controls[g, contour] = joint_controls(of_contour)
-        own = controls[g, contour][:, joint]
-        here = np.tensordot(glyphs[g].weights_at(rows.locations[k]), own, axes=1)
-        rounded = thresholds.rounding * by_rounding(own[0], here, degrees)
-        arm = min(arc(points) for points in here.view(np.complex128)[..., 0])
-        rows.numbers[k, 4] = turn / thresholds.corner_angle * arm
-        if (g, contour, joint) in smooth and turn >= rounded and np.radians(turn) * arm >= height and not meant:
-            kept.append(k)
-    return rows.chosen(np.array(kept, dtype=np.int64))
+    kept = np.zeros(len(rows.glyphs), dtype=np.bool_)
+    for g, contour in sorted({*zip(rows.glyphs.tolist(), rows.contours.tolist(), strict=True)}):
+        own = np.flatnonzero((rows.glyphs == g) & (rows.contours == contour))
+        of_contour, joints = glyphs[g].contours[contour], rows.segments[own]
+        degrees = np.stack([of_contour.degrees[joints - 1], of_contour.degrees[joints]], axis=1)
+        turns, made = rows.numbers[own, 1], rows.numbers[own, 2]
+        meant = (degrees == 1).all(axis=1) & (turns - made >= thresholds.kink)
+        controls = joint_controls(of_contour)[:, joints]
+        here = np.einsum("nk,kn...->n...", glyphs[g].weights_at(rows.locations[own]), controls)
+        rounded = thresholds.rounding * by_rounding(controls[0], here, degrees)
+        arms = np.array([min(map(arc, points)) for points in here.view(np.complex128)[..., 0]])
+        rows.numbers[own, 4] = turns / thresholds.corner_angle * arms
+        known = np.array([(g, contour, joint) in smooth for joint in joints.tolist()])
+        kept[own] = known & (turns >= rounded) & (np.radians(turns) * arms >= height) & ~meant
+    return rows.chosen(np.flatnonzero(kept))
 
 
 def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Sequence[int], least: float) -> Measured:
@@ -150,27 +149,26 @@ def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Seq
     return Measured.joined(parts, len(base))
 
 
-def by_rounding(default: FloatArray, here: FloatArray, degrees: IntArray) -> float:
-    """Standard deviation in degrees of a joint that rounding turns, see :func:`.segments.rounding_turn`.
+def by_rounding(default: FloatArray, here: FloatArray, degrees: IntArray) -> FloatArray:
+    """(n,) standard deviations in degrees of joints that rounding turns, see :func:`.segments.rounding_turn`.
 
     It is 0 where the default master is not in whole units. Deltas are whole too. Those of points between others are
     not, but no farther off. A cubic may be a quadratic in whole units that was raised, as CFF2 has those of ``glyf``.
 
     Args:
-        default, here: (2, 4, 2) in the default master and where it is looked at, of :func:`.turns.joint_controls`.
-        degrees: (2,) of the segments before and behind.
+        default, here: (n, 2, 4, 2) in the default master and where they are looked at, of
+            :func:`.turns.joint_controls`. degrees: (n, 2) of the segments before and behind.
     """
-    handles = default[:, 1] - default[:, 0]
+    handles = default[:, :, 1] - default[:, :, 0]
     shares = np.where((degrees == 3) & (off_grid(handles) > NEAR), 1.5, 3 / degrees)  # segments are raised to cubics
-    if off_grid(shares[:, None] * handles).max() > NEAR:
-        return 0.0
-    before, behind = shares * np.hypot(*(here[:, 1] - here[:, 0]).T)
-    return float(np.degrees(rounding_turn(before, behind)))
+    arms = here[:, :, 1] - here[:, :, 0]
+    turns = np.degrees(rounding_turns(*(shares * np.hypot(arms[..., 0], arms[..., 1])).T))
+    return np.where((off_grid(shares[..., None] * handles) > NEAR).any(axis=1), 0.0, turns)
 
 
 def off_grid(handles: FloatArray) -> FloatArray:
-    """(n,) how far handles, (n, 2), are from whole units."""
-    return np.asarray(np.abs(handles - np.rint(handles)).max(axis=1))
+    """(…,) how far handles (…, 2) are from whole units."""
+    return np.asarray(np.abs(handles - np.rint(handles)).max(axis=-1))
 
 
 def _worst(rows: Measured) -> Measured:

@@ -269,6 +269,11 @@ def rounding_turn(before: float, behind: float) -> float:
     return DEVIATION * np.sqrt(first * first + second * second + (first + second) ** 2)
 
 
+def rounding_turns(before: FloatArray, behind: FloatArray) -> FloatArray:
+    """(n,) standard deviations of the turns of joints, see :func:`rounding_turn`."""
+    return np.array([rounding_turn(a, b) for a, b in zip(before.tolist(), behind.tolist(), strict=True)])
+
+
 @compiled
 def rounding_variance(a: complex, b: complex, c: complex) -> float:
     """Variance of :func:`end_curvature` where rounding to whole units moves the three points.

@@ -1,8 +1,8 @@
 """Moves put on the grid: master by master and joint by joint, to the places that cost least beside all others.
 
 A place costs what curves move, and what it uses of the bounds; :mod:`.balance` has both. The places of the three points
-around a joint are tried together, all of them: most are passed over as what they cost alone is more than the best so
-far.
+around a joint are tried together, all of them: most are passed over, as what they cost at least, wherever the others
+are, is more than the best so far.
 """
 
 from __future__ import annotations
@@ -26,6 +26,12 @@ ACROSS = 1.0
 
 BEYOND = 1e3
 """Price of the square of a bound that is exceeded on the grid, in bounds."""
+
+SURELY = 1 + 1e-9
+"""Times the best price above which another one is higher, also after rounding."""
+
+RIGHT = 1.5
+"""Radians up to which a turn is compared with its bound by tangents."""
 
 LEAST = 1e-3
 """Radians that the grid makes good for: turns below cost nothing."""
@@ -134,7 +140,7 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
     if len(first) * len(node) * len(last) == 1:
         return False
     S, size = of.frozen.shape[1], 1 / of.step**2
-    now, best, cost = points[k, triple], np.empty(3, dtype=np.complex128), np.zeros((6, 6))
+    now, best, cost = points[k, triple], np.zeros(3, dtype=np.complex128), np.zeros((6, 6))
     off = np.zeros(2 * S)  # what others are off their best places
     for i in range(points.shape[1]):
         s = of.number[i]
@@ -155,23 +161,34 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
     rows = np.array([r for r in range(len(moves)) if np.any(slopes[r])], dtype=np.int64)
     slopes, moved = slopes[rows], moves[rows]
     found, least = now.copy(), np.inf
+    of_two = without_last(base, pulls, cost)
+    of_one = without_last(*of_two)
     way, change = np.zeros(6), np.zeros(6)
+    turn = own_turn(of, bounds, triple)
+    nodes = others[turn][:, 1:4].copy() if turn >= 0 else np.zeros((0, 3), dtype=np.complex128)
+    shares, steep = of.weights[acts, k], np.full(len(nodes), np.inf)
+    arms, ends = np.empty(len(nodes), dtype=np.complex128), np.empty(len(nodes), dtype=np.complex128)
     for stage in range(2):  # where they are now, and then elsewhere
         for a in first if stage else now[:1]:
             put(points, of.implied, k, triple[0], a)
             way[0], way[1] = a.real - best[0].real, a.imag - best[0].imag
             change[0], change[1] = a.real - now[0].real, a.imag - now[0].imag
+            if not price_of(way[:2], *of_one) < least * SURELY:
+                continue
             for b in node if stage else now[1:2]:
                 put(points, of.implied, k, triple[1], b)
                 way[2], way[3] = b.real - best[1].real, b.imag - best[1].imag
                 change[2], change[3] = b.real - now[1].real, b.imag - now[1].imag
+                if not price_of(way[:4], *of_two) < least * SURELY:
+                    continue
+                for m in range(len(nodes)):
+                    ends[m] = nodes[m, 1] + shares[m] * b - nodes[m, 2]
+                    arms[m] = nodes[m, 1] - nodes[m, 0] + shares[m] * (b - a)
                 for c in last if stage else now[2:]:
+                    if turns_too_far(arms, ends, shares, c, steep):
+                        continue
                     way[4], way[5] = c.real - best[2].real, c.imag - best[2].imag
-                    total = base
-                    for n in range(6):
-                        for m in range(n):
-                            total += 2 * cost[n, m] * way[m] * way[n]
-                        total += (pulls[n] + cost[n, n] * way[n]) * way[n]
+                    total = price_of(way, base, pulls, cost)
                     if not total < least:
                         continue
                     change[4], change[5] = c.real - now[2].real, c.imag - now[2].imag
@@ -179,11 +196,62 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
                     total = priced(total, least, points, of, k, bounds, acts, others, moved, slopes, change)
                     if total < least:
                         least, found[0], found[1], found[2] = total, a, b, c
+                        for m in range(len(nodes)):
+                            most = (of.most[bounds[turn], acts[m]] + LEAST) * (1 + np.sqrt(least / BEYOND)) * SURELY
+                            steep[m] = np.tan(most) if most < RIGHT else np.inf
     for n in range(3):
         put(points, of.implied, k, triple[n], found[n])
         if found[n] != now[n]:
             slide(moves, of, k, triple[n], found[n] - now[n])
     return bool((found != now).any())
+
+
+@compiled
+def own_turn(of: Rounding, bounds: IntArray, triple: IntArray) -> int:
+    """Which of the bounds is that of the turn at the joint itself, or -1."""
+    for n, b in enumerate(bounds):
+        if not of.is_jump[b] and np.all(of.joints[b, 1:4] == triple):
+            return n
+    return -1
+
+
+@compiled
+def turns_too_far(arms: ComplexArray, ends: ComplexArray, shares: FloatArray, place: complex, steep: FloatArray) -> bool:
+    """Whether a joint turns by more than angles of such tangents anywhere, with the point behind it at a place.
+
+    Args:
+        arms: (l,) from the point before to the node. ends: (l,) what is to be taken off a share of the place, for the
+            way from the node on.
+    """
+    for m in range(len(arms)):
+        both = arms[m].conjugate() * (shares[m] * place - ends[m])
+        if abs(both.imag) > steep[m] * both.real:
+            return True
+    return False
+
+
+@compiled
+def price_of(way: FloatArray, base: float, pulls: FloatArray, cost: FloatArray) -> float:
+    """What moves (n,) cost: ``base + pulls way + way cost way``, the cost (n, n) being symmetric."""
+    total = base
+    for n in range(len(way)):
+        for m in range(n):
+            total += 2 * cost[n, m] * way[m] * way[n]
+        total += (pulls[n] + cost[n, n] * way[n]) * way[n]
+    return total
+
+
+@compiled
+def without_last(base: float, pulls: FloatArray, cost: FloatArray) -> tuple[float, FloatArray, FloatArray]:
+    """The least price over the last two of all moves, as one of the others; see :func:`price_of`."""
+    n = len(pulls) - 2
+    own, pull, mixed = cost[n:, n:], pulls[n:], np.ascontiguousarray(cost[n:, :n])
+    size = own[0, 0] * own[1, 1] - own[0, 1] * own[1, 0]
+    if size <= 0:  # of a point that does not move
+        return base, pulls[:n].copy(), cost[:n, :n].copy()
+    inverse = np.array([[own[1, 1], -own[0, 1]], [-own[1, 0], own[0, 0]]]) / size
+    by_others = inverse @ mixed
+    return base - pull @ inverse @ pull / 4, pulls[:n] - pull @ by_others, cost[:n, :n] - mixed.T @ by_others
 
 
 @compiled

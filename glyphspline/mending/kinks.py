@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..checks.kinds import KINDS
-from ..checks.segments import rounding_turn
+from ..checks.segments import rounding_turns
 from ..checks.turns import joint_controls, turns_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
@@ -198,11 +198,6 @@ def turns_allowed(layout: Layout, joint: int, turn: float, exact: bool, design: 
     arms = (legs + np.linalg.norm(controls[:, :, 3] - controls[:, :, 0], axis=-1)).min(axis=1) / 2
     found = np.maximum(found, limits.kink_height * design.em / 1000 / np.maximum(arms, EXACT))
     return np.minimum(found, np.radians(max(limits.kink, min(BETTER * turn, 0.99 * limits.turn))))
-
-
-def rounding_turns(before: FloatArray, behind: FloatArray) -> FloatArray:
-    """(L,) standard deviations; see :func:`.segments.rounding_turn`."""
-    return np.array([rounding_turn(a, b) for a, b in zip(before.tolist(), behind.tolist(), strict=True)])
 
 
 def groups_of(places: Sequence[tuple[int, int]], counts: Mapping[int, int]) -> list[tuple[int, list[int]]]:

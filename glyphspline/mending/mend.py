@@ -256,7 +256,7 @@ class _Fault:
             for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
                 bound = float(distances(origin, moved(contour, numbers, places), design).max())
                 fault.tries.append(_Try(numbers, places, bound))
-            if change.kind not in ("handles", "slanted"):  # whose moves come in the order in which they are liked
+            if change.kind not in ("handles", "slanted", "extremum"):  # whose moves come in the order in which they are liked
                 fault.tries.sort(key=lambda each: each.distance)
         within = [each for each in fault.tries if each.distance <= design.tolerance]
         if fault.tries and not within:

@@ -159,7 +159,7 @@ def test_rounding_turns_a_raised_quadratic_as_it_turns_the_quadratic() -> None:
     def turn(share: float, degree: int) -> float:
         controls = np.zeros((2, 4, 2))
         controls[:, 1] = np.rint(65536 * share * np.array([(10, 3), (-7, -2)])) / 65536
-        return by_rounding(controls, controls, np.array([degree, degree]))
+        return float(by_rounding(controls[None], controls[None], np.array([[degree, degree]]))[0])
 
     assert turn(2 / 3, 3) == pytest.approx(turn(2 / 3, 2), rel=1e-4)
     assert turn(2 / 3, 3) == pytest.approx(turn(1.0, 3), rel=1e-4)

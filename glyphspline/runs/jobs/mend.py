@@ -157,11 +157,11 @@ def mend_source(
     """
     check_kinds(kinds)
     if isinstance(source, Font):
-        from ...writers.back.fonts import edit_of
+        from ...writers.back.fonts import editable as editable_font
 
         if layer is not None:
             raise OutputError("is a font, which has no layers", font=str(source.path))
-        edit_of(source)
+        editable_font(source)
     else:
         from ...writers.back.back import editable
 

@@ -28,6 +28,12 @@ BOUNDS = ("head", "hmtx", "vmtx", "hhea", "vhea", "maxp")
 """Tables that hold outlines, and those that follow where bounds change."""
 
 
+def editable(source: Font) -> None:
+    """Raise an OutputError if the points of a font cannot be moved."""
+    if source.num_faces > 1:
+        raise OutputError("is one of a collection of fonts, which are not mended", font=str(source.path))
+
+
 @lru_cache(maxsize=1)
 def edit_of(source: Font) -> FontEdit:
     """The edit of a font, opened once in a process."""
@@ -42,8 +48,7 @@ class FontEdit:
     """
 
     def __init__(self, source: Font) -> None:
-        if source.num_faces > 1:
-            raise OutputError("is one of a collection of fonts, which are not mended", font=str(source.path))
+        editable(source)
         self.source = source
         self.font = font = source.tables()
         font.recalcBBoxes = False
@@ -105,9 +110,10 @@ def write_points(
     Raises:
         OutputError: the font is one of a collection. OSError: it cannot be written.
     """
-    edit = FontEdit(source)
-    for old, new in glyphs:
-        edit.put(old, new)
+    editable(source)
     if not dry and (glyphs or copy is not None):
+        edit = FontEdit(source)
+        for old, new in glyphs:
+            edit.put(old, new)
         write_whole(str(copy or source.path), edit.written(), durable=True)
     return [new.name for _, new in glyphs]

@@ -221,8 +221,8 @@ def placed_by_points(font: TTFont) -> dict[str, str]:
     glyf = font["glyf"]
     found: dict[str, str] = {}
     for name in font.getGlyphOrder():
-        glyph = glyf[name]
-        if glyph.isComposite() and any(hasattr(part, "firstPt") for part in glyph.components):
+        # Only composites are read.
+        if glyf.glyphs[name].isComposite() and any(hasattr(part, "firstPt") for part in glyf[name].components):
             found |= dict.fromkeys(parts_of(font, name), name)
     return found
 
