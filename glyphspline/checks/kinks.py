@@ -444,7 +444,7 @@ def _joints_along(
     turns_only: bool,
 ) -> AxisKinks:  # fmt: skip
     """The smooth joints of glyphs along an axis, unsorted; ``base``: their normalised location, but for the axis."""
-    axes, user = glyphs[0].axes, glyphs[0].axes[axis].user
+    axes, users = glyphs[0].axes, glyphs[0].axes[axis].users
     ticks = [
         np.resize(values, max(len(values), 2)) for values in (glyph.ticks(axis) for glyph in glyphs)
     ]  # or no range
@@ -481,7 +481,7 @@ def _joints_along(
         on_grid = np.maximum(on_grid, np.nan_to_num(there).max(axis=1, initial=0.0))
     made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)
     locations = np.tile([each.user(x) for each, x in zip(axes, base.tolist(), strict=True)], (len(row), 1))
-    locations[:, axis] = [user(x) for x in at[row].tolist()]
+    locations[:, axis] = users(at[row])
     contours, segments = np.concatenate([places for _, places in smooth]).T
     rows = Measured(
         owners, contours, segments, np.full(len(row), KINK),
@@ -489,9 +489,9 @@ def _joints_along(
             np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0), np.full(len(row), np.nan)
         ]),
         start[row, 0, 0] + ways[row, None] * (end - start)[row, 0, 0], locations,
-        np.array([user(x) for x in between.ravel().tolist()]).reshape(-1, 2),
+        users(between),
     )  # fmt: skip
-    jumps_at = np.array([user(x) for x in jumps_at[jump_row].tolist()])
+    jumps_at = users(jumps_at[jump_row])
     names = [(glyph.name, glyph.gid) for glyph in glyphs]
     return AxisKinks(axes, axis, names, rows, at_masters, jumps[jump_row], jumps_at, on_grid)
 

@@ -9,6 +9,7 @@ the strands cross a small circle around the end; chords that cross inside these 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -71,17 +72,17 @@ def _crosses(
     (a, b), (a_end, b_end) = contact.begin, contact.end
     last = radius >= largest
     # A contact shorter than this share of the radius is a point.
-    long = a != a_end and one.reach(a, a_end) > 0.1 * radius
+    long = a != a_end and one.reach(a, a_end, radius) > 0.1 * radius
     if long and not last:
         return None
     small = radius
     if one is other:  # the strands may be the two sides of a fold, or of a small loop
-        small = min(radius, *(one.reach(*at) / 2 for at in {contact.begin, contact.end}))
+        small = min(radius, *(one.reach(*at, enough=2 * radius) / 2 for at in {contact.begin, contact.end}))
     if small < radius and not last:
         return None
     if small < radius and long:  # beside a contact that ends in a fold, the strands may cross where it begins
-        (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(*at))
-        if one.reach(a, b) < 2 * radius:
+        (a, b) = (a_end, b_end) = max(contact.begin, contact.end, key=lambda at: one.reach(at[0], at[1], np.inf))
+        if one.reach(a, b, 2 * radius) < 2 * radius:
             return None
         small = radius
     # Directions nearer to each other than this, in radians, are the same: 25 times what the distance of chords that
@@ -102,10 +103,18 @@ class _Strand:
 
     def __init__(self, cubics: FloatArray) -> None:
         self.cubics = cubics
-        points = np.einsum("kt,mkc->mtc", bernstein(PLACES), cubics)
+
+    @cached_property
+    def lengths(self) -> FloatArray:
+        """(PLACES m + 1,) of the contour up to even places, by chords."""
+        points = np.einsum("kt,mkc->mtc", bernstein(PLACES), self.cubics)
         chords = np.hypot(*np.moveaxis(np.diff(points, axis=1), 2, 0))
-        self.lengths = np.concatenate([[0.0], np.cumsum(chords)])
-        self.total = float(self.lengths[-1])
+        return np.concatenate([[0.0], np.cumsum(chords)])
+
+    @property
+    def total(self) -> float:
+        """The length of the contour."""
+        return float(self.lengths[-1])
 
     def positions(self, places: FloatArray) -> FloatArray:
         """Lengths along the contour up to places (k,), by chords."""
@@ -114,16 +123,27 @@ class _Strand:
 
     def way(self, place: float, to: float) -> float:
         """The shorter way between two places as positions count it, negative if it runs back."""
+        if place == to:
+            return 0.0
         begin, end = self.positions(np.array([place, to])).tolist()
         return float((end - begin + self.total / 2) % self.total - self.total / 2)
+
+    def at(self, place: float) -> complex:
+        """The point at a place."""
+        s = min(int(place), len(self.cubics) - 1)
+        x, y, *_ = jet(self.cubics, s, place - s)
+        return complex(x, y)
 
     def between(self, places: FloatArray, begin: float, end: float) -> BoolArray:
         """(k,) which places (k,) one passes on the way from one place forward to another one."""
         found: BoolArray = (places - begin) % len(self.cubics) <= (end - begin) % len(self.cubics)
         return found
 
-    def reach(self, place: float, to: float) -> float:
-        """How far the contour goes from a place on the shorter way to another one: to points of each piece."""
+    def reach(self, place: float, to: float, enough: float) -> float:
+        """How far the contour goes from a place on the shorter way to another one, to points of each piece: exact if it
+        is less than ``enough``."""
+        if (apart := abs(self.at(to) - self.at(place))) >= enough:
+            return apart
         low, high = (place, to) if self.way(place, to) >= 0 else (to, place)
         high += len(self.cubics) * (high < low)
         ends = np.array([low, *range(int(low) + 1, int(np.ceil(high))), high])
@@ -183,6 +203,9 @@ class _Contact:
 
 def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
     """Pairs of chords that hang together; see :func:`all_crossings`."""
+    if len(touching) == 1:
+        ((a, b, a_end, b_end),) = touching.tolist()
+        return [_Contact((a, b), (a_end, b_end), a_end, [])]
     ordered = touching[np.lexsort(touching.T[::-1])]
     apart = (np.abs(ordered[1:, :2] - ordered[:-1, 2:]) > 1e-12).any(axis=1)  # else one goes on where another one ends
     starts = np.concatenate([[0], 1 + np.flatnonzero(apart)])

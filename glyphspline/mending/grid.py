@@ -216,7 +216,9 @@ def own_turn(of: Rounding, bounds: IntArray, triple: IntArray) -> int:
 
 
 @compiled
-def turns_too_far(arms: ComplexArray, ends: ComplexArray, shares: FloatArray, place: complex, steep: FloatArray) -> bool:
+def turns_too_far(
+    arms: ComplexArray, ends: ComplexArray, shares: FloatArray, place: complex, steep: FloatArray
+) -> bool:
     """Whether a joint turns by more than angles of such tangents anywhere, with the point behind it at a place.
 
     Args:

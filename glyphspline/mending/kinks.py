@@ -249,19 +249,21 @@ def _least(
     If all ways are tried and there are none, the group knows what it needs.
     """
     layout = Layout(MasterContour(points, contour.degrees))
-    stretches = dict[tuple[int, bool], Stretch]()
+    stretches, bounded = dict[tuple[int, ...], Stretch](), dict[tuple[object, ...], list[Bound]]()
     for exact, own in groupby(ways, key=lambda way: way.exact):
         later = []
         for way in own:
-            if (way.far, way.node) not in stretches:
-                free = sorted({point for joint in group.joints for point in layout.free(joint, way.far, way.node)})
-                if not free:
-                    continue
-                stretches[way.far, way.node] = Stretch(layout, free, design)
-            stretch = stretches[way.far, way.node]
-            bounds = bounds_of(stretch, group, way, design)
-            most = SMALL * design.em / 1000 if way.small else np.inf
-            key = b"".join([points.tobytes(), bytes(way[:3]), *(bound.most.tobytes() for bound in bounds)])
+            free = tuple(sorted({point for joint in group.joints for point in layout.free(joint, way.far, way.node)}))
+            if not free:
+                continue
+            if free not in stretches:
+                stretches[free] = Stretch(layout, free, design)
+            stretch, what = stretches[free], (free, exact, way.meets)
+            if what not in bounded:
+                bounded[what] = bounds_of(stretch, group, way, design)
+            bounds, most = bounded[what], SMALL * design.em / 1000 if way.small else np.inf
+            at = points.tobytes(), repr((free, way.small)).encode()
+            key = b"".join([*at, *(bound.most.tobytes() for bound in bounds)])
             if key in seen:
                 continue
             seen.add(key)

@@ -31,6 +31,8 @@ PER_EM = 1e-3
 TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
 
+LIKED = ("handles", "slanted", "extremum")
+"""Kinds whose moves come in the order in which they are tried; of others the least comes first."""
 
 SMOOTHED = ("kink", "jump")
 """Kinds of joints, of which several are mended together."""
@@ -256,7 +258,7 @@ class _Fault:
             for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
                 bound = float(distances(origin, moved(contour, numbers, places), design).max())
                 fault.tries.append(_Try(numbers, places, bound))
-            if change.kind not in ("handles", "slanted", "extremum"):  # whose moves come in the order in which they are liked
+            if change.kind not in LIKED:
                 fault.tries.sort(key=lambda each: each.distance)
         within = [each for each in fault.tries if each.distance <= design.tolerance]
         if fault.tries and not within:

@@ -52,9 +52,6 @@ AT = np.linspace(1 / DRAWN, 1.0, 65)[:-1]
 
 BASIS = (1 - AT) ** 3, 3 * AT * (1 - AT) ** 2, 3 * AT**2 * (1 - AT), AT**3
 
-TURNED = np.radians(10.0)
-"""Angle at most by which it turns off its direction then."""
-
 ROUNDED = 0.8
 """Units by which rounding moves what is drawn on, at most."""
 
@@ -199,7 +196,7 @@ def slid_moves(contour: MasterContour, segment: int, axis: int) -> Iterator[Move
         return
     each = [(starts_of(contour)[(segment + k) % m] + np.arange(degree + 1)) % count for k in (-1, 0, 1)]
     for near, own, far in (each, [numbers[::-1] for numbers in each[::-1]]):
-        slid = [_slid(*(points[numbers] for numbers in (near, own, far)), axis) for points in contour.points]
+        slid = [_slid(points[near], points[own], points[far], axis) for points in contour.points]
         places = [points for points in slid if points is not None]
         if len(places) == len(slid):
             yield np.concatenate([near[1:], own[1:-1]]), np.stack(places)
@@ -229,23 +226,27 @@ def _drawn_on(curve: FloatArray, end: FloatArray, level: FloatArray) -> tuple[Fl
     across = cross(along, level)
     with np.errstate(divide="ignore", invalid="ignore"):
         if len(curve) == 3:
-            both = [(point, point + cross(end - point, level) / cross(way, level) * way, end)
-                    for point, way in ((start, along), (via, out))]
-            fits = all((inner - point) @ way > 0 and (end - inner) @ level > 0
-                       for (point, inner, _), way in zip(both, (along, out), strict=True))
+            both = [
+                (point, point + cross(end - point, level) / cross(way, level) * way, end)
+                for point, way in ((start, along), (via, out))
+            ]
+            fits = all(
+                (inner - point) @ way > 0 and (end - inner) @ level > 0
+                for (point, inner, _), way in zip(both, (along, out), strict=True)
+            )
             return (np.array(both[0]), np.array(both[1])) if fits else None
         before, one, other, behind = BASIS
         aim = via - (before + one)[:, None] * start - (other + behind)[:, None] * end
         sizes = np.stack([cross(aim, level) / one, cross(aim, along) / other], axis=1) / across
-        wholes = np.stack(np.broadcast_arrays(start, start + sizes[:, :1] * along, end - sizes[:, 1:] * level, end), axis=1)
-        news = split(wholes, AT[:, None, None])[1]
-        ways = news[:, 1] - via
-        turns = np.abs(np.arctan2(cross(out, ways), ways @ out))
-    turns[~(sizes > 0).all(axis=1)] = np.inf
-    best = int(turns.argmin())
-    if not turns[best] < TURNED:
+        inner = start + sizes[:, :1] * along, end - sizes[:, 1:] * level
+        wholes = np.stack(np.broadcast_arrays(start, *inner, end), axis=1)
+        olds, news = split(wholes, AT[:, None, None])
+        off = np.square(olds - curve).sum(axis=(1, 2))
+    off[~(sizes > 0).all(axis=1)] = np.inf
+    best = int(off.argmin())
+    if not np.isfinite(off[best]):
         return None
-    news[best, 1] = via + np.hypot(*ways[best]) / np.hypot(*out) * out
+    news[best, 1] = via + np.hypot(*(news[best, 1] - via)) / np.hypot(*out) * out
     return wholes[best], news[best]
 
 
@@ -286,7 +287,7 @@ def _joined(curves: FloatArray, parts: FloatArray, axis: int) -> tuple[FloatArra
 
 
 def _level(heights: FloatArray) -> list[float]:
-    """Parameters at which a curve with such control points (d + 1,), of degree 2 or 3, is level, also beyond its ends."""
+    """Parameters at which a curve with control points (d + 1,), of degree 2 or 3, is level, also beyond its ends."""
     slopes = np.diff(heights)
     change = np.diff(slopes)
     terms = [*np.diff(change), *change[:1] * (len(slopes) - 1), slopes[0]]

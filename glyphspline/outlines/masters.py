@@ -55,9 +55,13 @@ class DesignAxis:
 
     def user(self, x: float) -> float:
         """The value of the axis at a normalised one."""
+        return float(self.users(np.array(x)))
+
+    def users(self, x: FloatArray) -> FloatArray:
+        """The values of the axis at normalised ones."""
         if self.mapping:
-            x = float(np.interp(x, *np.array(self.mapping).T[::-1]))
-        return self.default + x * (self.default - self.minimum if x < 0 else self.maximum - self.default)
+            x = np.interp(x, *np.array(self.mapping).T[::-1])
+        return self.default + x * np.where(x < 0, self.default - self.minimum, self.maximum - self.default)
 
 
 @dataclass(frozen=True, eq=False)

@@ -369,36 +369,56 @@ def test_points_go_from_a_ufo_and_all_else_stays(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("fault", "kinds"),
+    ("fault", "kinds", "tolerance"),
     [
-        ("slanted", "slanted"), ("straight", "straight"), ("extreme point 2 units off level", "unlevel kink"),
-        ("short segment", "short"), ("almost closed", "short"), ("direction", "direction"),
+        ("slanted", "slanted", 4), ("straight", "straight", 4), ("extreme point 2 units off level", "unlevel kink", 4),
+        ("short segment", "short", 4), ("almost closed", "short", 4), ("direction", "direction", 4),
+        ("extremum left out", "extremum", 16),
     ],
 )  # fmt: skip
-def test_other_faults_come_back_to_the_clean_outline(fault: str, kinds: str) -> None:
+def test_other_faults_come_back_to_the_clean_outline(fault: str, kinds: str, tolerance: int) -> None:
     font = gs.open_font(Path(get_data_path(), "fonts", "ttf", "cmr10.ttf"))
     rng = np.random.default_rng(3)
     near = meant = 0
     for name in font.select(text="abcdefghkmnpqrstBCDEFGHPRS2345689"):
-        clean = cubics_of(font.outline(name))
+        clean = font.outline(name)
+        if "extremum" not in fault:  # raised, curvature jumps beside most extrema: to mend them would bring that back
+            clean = cubics_of(clean)
         em = clean.metrics.units_per_em
         made = planted([list(c.segments()) for c in clean.contours], em, gs.check(clean), fault, rng)
         if made is None or meant == 12:
             continue
         outline = replace(clean, contours=[Contour.from_segments(segments) for segments in made[0]])
-        mended, changes = gs.mend(outline, kinds.split(), 4 * em / 1000)
+        mended, changes = gs.mend(outline, kinds.split(), tolerance * em / 1000)
         own = [one for one in changes if one.contour == made[1].contour]
         if not own:
             continue
         meant += 1
         near += gs.compare(clean, mended).bound <= 2 * em / 1000 and all(one.is_mended for one in own)
         assert not Counter(one.kind for one in gs.check(mended)) - Counter(one.kind for one in gs.check(outline))
-        assert gs.compare(outline, mended).seen <= 4 * em / 1000
+        assert gs.compare(outline, mended).seen <= tolerance * em / 1000
         assert len(mended.arrays.points) <= len(outline.arrays.points)
         for one in changes:
             assert one.is_mended or one.gone == one.moved == 0
     assert meant >= 5
     assert near >= 0.8 * meant
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_an_extreme_point_of_cubics_that_went_comes_back(axis: int) -> None:
+    shape = np.array([(0, 250), (0, 388), (134, 500), (300, 500), (466, 500), (600, 388), (600, 250)], dtype=np.float64)
+    curves = shape[[0, 1, 2, 3]], shape[[3, 4, 5, 6]]
+    line = np.array([shape[-1], shape[0]])
+    clean = gs.Outline("o", contours=[Contour.from_segments([part[:, :: 1 - 2 * axis] for part in (*curves, line)])])
+    made = planted([list(clean.contours[0].segments())], 1000, [], "extremum left out", np.random.default_rng(1))
+    assert made is not None
+    outline = replace(clean, contours=[Contour.from_segments(segments) for segments in made[0]])
+    (found,) = [one for one in gs.check(outline) if one.kind == "extremum"]
+    mended, (change,) = gs.mend(outline, ["extremum"], 16.0)
+    assert (change.segment, change.is_mended) == (found.segment, True)
+    assert gs.compare(clean, outline).seen > 2
+    assert gs.compare(clean, mended).bound < 1.5
+    assert abs(mended.arrays.points.max(axis=0)[1 - axis] - 500) <= 1
 
 
 def test_long_handles_are_cut_to_where_they_meet_in_all_masters() -> None:
