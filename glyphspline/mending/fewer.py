@@ -11,7 +11,7 @@ import numpy as np
 from ..curves.bezier import cross, split
 from ..outlines.masters import MasterContour
 from ..types import FloatArray, IntArray
-from .shapes import starts_of
+from .joints import starts_of
 
 SHARES = (1.0, 0.0, 0.5, np.nan)
 """Where on a short segment its two ends become one: at its end, at its beginning, midway, or where its neighbours'

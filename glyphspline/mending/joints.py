@@ -22,6 +22,15 @@ SMOOTH = 12.0
 MIDWAY = 1e-6
 """Distance from midway between two control points of quadratics up to which a point is implied by them."""
 
+Move = tuple[IntArray, FloatArray]
+"""Numbers (P,) of points in a contour, and their new places (K, P, 2)."""
+
+
+def starts_of(contour: MasterContour) -> IntArray:
+    """(m,) number of the point where each segment begins."""
+    starts: IntArray = np.cumsum(contour.degrees) - contour.degrees
+    return starts
+
 
 class Layout:
     """A contour in K masters, of N points and m segments.
@@ -35,7 +44,7 @@ class Layout:
     def __init__(self, contour: MasterContour) -> None:
         self.contour, self.points, self.degrees = contour, contour.points, contour.degrees
         count = self.points.shape[1]
-        self.starts = np.cumsum(self.degrees) - self.degrees
+        self.starts = starts_of(contour)
         self.is_node: BoolArray = np.zeros(count, dtype=np.bool_)
         self.is_node[self.starts] = True
         self.handles = np.column_stack([self.starts - 1, self.starts + 1]) % count

@@ -1,6 +1,6 @@
 """Findings of a glyph mended, in one master or in all: no point comes, and nothing new is found.
 
-Each finding has a list of moves, of joints that kink (:mod:`.joints`) and of others (:mod:`.shapes`). Those that keep
+Each finding has a list of moves, of joints that kink (:mod:`.kinks`) and of others (:mod:`.shapes`). Those that keep
 the curves within the tolerance, everywhere between the masters, are tried: the first of every finding, then the next
 ones of those that are still found or bring a new finding. The kinds follow each other. Last come those for which points
 go, or change their order (:mod:`.fewer`), one finding after the other.
@@ -21,8 +21,9 @@ from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .fewer import EDITED, Edited
+from .joints import starts_of
 from .kinks import smoothed
-from .shapes import moved, shape_moves, starts_of
+from .shapes import moved, shape_moves
 from .state import Change, Design, Into, Key, State, distances
 
 PER_EM = 1e-3
