@@ -122,7 +122,8 @@ def kinks_of(
         turns, made = rows.numbers[own, 1], rows.numbers[own, 2]
         meant = (degrees == 1).all(axis=1) & (turns - made >= thresholds.kink)
         controls = joint_controls(of_contour)[:, joints]
-        here = np.einsum("nk,kn...->n...", glyphs[g].weights_at(rows.locations[own]), controls)
+        weights = glyphs[g].weights_at(rows.locations[own][:, None])  # (n, 1, K)
+        here = (weights @ np.swapaxes(controls, 0, 1).reshape(len(own), -1, 16)).reshape(-1, 2, 4, 2)
         rounded = thresholds.rounding * by_rounding(controls[0], here, degrees)
         arms = np.array([min(map(arc, points)) for points in here.view(np.complex128)[..., 0]])
         rows.numbers[own, 4] = turns / thresholds.corner_angle * arms
