@@ -219,7 +219,8 @@ def own_turn(of: Rounding, bounds: IntArray, triple: IntArray) -> int:
 def turns_too_far(
     arms: ComplexArray, ends: ComplexArray, shares: FloatArray, place: complex, steep: FloatArray
 ) -> bool:
-    """Whether a joint turns by more than angles of such tangents anywhere, with the point behind it at a place.
+    """Whether a joint turns by more than angles of such tangents anywhere, with the point behind it at a place; an
+    infinite one bounds nothing.
 
     Args:
         arms: (l,) from the point before to the node. ends: (l,) what is to be taken off a share of the place, for the
@@ -227,7 +228,7 @@ def turns_too_far(
     """
     for m in range(len(arms)):
         both = arms[m].conjugate() * (shares[m] * place - ends[m])
-        if abs(both.imag) > steep[m] * both.real:
+        if steep[m] < np.inf and abs(both.imag) > steep[m] * both.real:
             return True
     return False
 
