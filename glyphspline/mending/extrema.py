@@ -94,29 +94,33 @@ def slid_moves(contour: MasterContour, segment: int, axis: int) -> Iterator[Move
     m, count, degree = len(contour), contour.points.shape[1], contour.degrees[segment]
     if degree == 1 or m < 3 or (contour.degrees[[segment - 1, (segment + 1) % m]] != degree).any():
         return
-    each = [(starts_of(contour)[(segment + k) % m] + np.arange(degree + 1)) % count for k in (-1, 0, 1)]
-    for near, own, far in (each, [numbers[::-1] for numbers in each[::-1]]):
-        slid = [_slid(points[near], points[own], points[far], axis) for points in contour.points]
-        places = [points for points in slid if points is not None]
-        if len(places) == len(slid):
-            yield np.concatenate([near[1:], own[1:-1]]), np.stack(places)
+    before, own, behind = ((starts_of(contour)[(segment + k) % m] + np.arange(degree + 1)) % count for k in (-1, 0, 1))
+    moves = [_slid(points[before], points[own], points[behind], axis) for points in contour.points]
+    both = [move for move in moves if move is not None]
+    if len(both) == len(moves):
+        one, other = (np.stack(side) for side in zip(*both, strict=True))
+        yield np.concatenate([before[1:], own[1:-1]]), one
+        yield np.concatenate([behind[-2::-1], own[-2:0:-1]]), other
 
 
-def _slid(near: FloatArray, own: FloatArray, far: FloatArray, axis: int) -> FloatArray | None:
-    """(2 d - 1, 2) points of a curve and the next one, from the second on, after their joint slid to the extremum.
+def _slid(before: FloatArray, own: FloatArray, behind: FloatArray, axis: int) -> tuple[FloatArray, FloatArray] | None:
+    """(2 d - 1, 2) points of a neighbour, from its second one on, and of the curve between, after their joint slid to
+    the extremum: of the neighbour before, and of that behind, backwards.
 
     The extremum is where both neighbours, drawn on, are level at one place: an extreme point that went is put back so.
     Else it is where the curve itself has it. Curves are (d + 1, 2).
     """
-    place = _met(near, far[::-1], axis)
+    place = _met(before, behind[::-1], axis)
     if place is None:
         inside = [t for t in _level(own[:, axis]) if 0 < t < 1]
         if len(inside) != 1:
             return None
         place = split(own, inside[0])[0][-1]
     level = np.where(np.arange(2) == axis, 0.0, np.sign(own[-1] - own[0]))
-    drawn, back = _drawn_on(near, place, level), _drawn_on(far[::-1], place, -level)
-    return None if drawn is None or back is None else np.concatenate([drawn[0][1:], back[1][-2:0:-1]])
+    one, other = _drawn_on(before, place, level), _drawn_on(behind[::-1], place, -level)
+    if one is None or other is None:
+        return None
+    return np.concatenate([one[0][1:], other[1][-2:0:-1]]), np.concatenate([other[0][1:], one[1][-2:0:-1]])
 
 
 def _drawn_on(curve: FloatArray, end: FloatArray, level: FloatArray) -> tuple[FloatArray, FloatArray] | None:

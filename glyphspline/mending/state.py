@@ -19,7 +19,7 @@ from ..curves.pairing import SHARPNESS, pair_instances
 from ..outlines.contour_arrays import offsets_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray, IntArray
-from .joints import SMOOTH, Layout
+from .joints import SMOOTH, Layout, starts_of
 
 STEPS = 8
 """Steps of each axis, at whose ends findings other than kinks are looked for besides the masters."""
@@ -294,7 +294,7 @@ def arcs_of(contour: MasterContour, other: MasterContour) -> FloatArray:
 
     It is (0, 4) where a corner is elsewhere in the other contour: arcs have their ends in common.
     """
-    m, starts = len(contour), np.cumsum(contour.degrees) - contour.degrees
+    m, starts = len(contour), starts_of(contour)
     with np.errstate(invalid="ignore"):
         smooth = (np.abs(turns_of(joint_controls(contour))) < SMOOTH).all(axis=0)
     corners = np.flatnonzero(~smooth)
