@@ -18,6 +18,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import directions, hidden_extrema, length
+from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import NO_HANDLE, SMOOTH_KINK, Joints
 from .cubics import fit_between, is_straight
@@ -299,7 +300,8 @@ def fit_run(
         found, bad = np.empty((masters, r, 4, 2)), np.zeros(r, dtype=np.bool_)
         for v in range(masters):
             own = alone(joints, v)
-            run = as_run(cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], share, ease, settled)
+            owned = as_run(cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], share, ease, settled)
+            run = borrowed(owned)
             harmonise(run, own, i, limits.tolerance, em)
             round_run(run, own, i, limits.tolerance, em)
             mark_joints(run, cubics[v], i, em, bad)
@@ -322,8 +324,9 @@ def fit_run(
             ease[0] = ease[n] = min(ease[0], ease[n])
         if good:
             if r < n or not whole or jumps_of(found, degrees[i:j], closed, em) < before:
-                last, ends = found, run.places
+                last, ends = found, places[: r + 1]
             break
+        keep_alive(owned)
     kinds = np.array([degrees[i + ends[s]] if ends[s + 1] == ends[s] + 1 else 3 for s in range(len(ends) - 1)])
     if masters == 1 and on_grid(last[0], kinds, closed):
         let_meet(last, cubics, degrees, joints, upright, i, closed, ends, start, limits)
@@ -346,6 +349,7 @@ def let_meet(
         k = (i + places[s]) % m
         # Where a check found something even in a try that left curvatures alone, it would find it again.
         stays[s] = EASE[start[k]] == 0.0 or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
+    met, seen = 0, np.full(r, -1)  # nodes that met since, and how many had when a node was last tried
     for node in range(2 * r):  # once more by nearby places: one that does not meet may do so when others have
         q = node % r
         if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q]:
@@ -353,14 +357,19 @@ def let_meet(
         if joint_turn(P[0, q - 1 : q] if q > 0 else P[0, r - 1 :], P[0, q : q + 1]) > SMOOTH_KINK:
             continue
         for wide in range(WIDEST + 1 if node < r else 1):
-            if end_jump(P[0, q - 1], P[0, q], limits.em) <= 0.1:
+            if end_jump(P[0, q - 1], P[0, q], limits.em) <= 0.1 or (wide == 0 and seen[q] == met):
                 break
             settled = away_from(q, max(wide, 1), stays, closed)
-            run = as_run(
+            owned = as_run(
                 cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], ones, ones, settled
             )  # fmt: skip
+            run = borrowed(owned)
             if meets(run, q, wide, P, settled, cubics, joints, i, limits, room):
                 P[0] = run.P
+                met += 1
+            keep_alive(owned)
+            if wide == 0:
+                seen[q] = met
 
 
 @compiled

@@ -14,6 +14,7 @@ from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, r
 from ...compiled import compiled
 from ...curves.nearest import near_places
 from ...curves.pairing import SHARPNESS, pair_instances
+from ...intrinsics import borrowed, keep_alive
 from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ...outlines.segments import all_cubics, farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
@@ -85,8 +86,10 @@ def fit_contours(
                 for s in range(n):
                     before[v, s] = old[v, order[s]]
             run, types, nodes, inside = fit_contour(
-                chain, own, joints, held, limits, np.roll(fresh[a:b], -k), before, at[order]
-            )
+                borrowed(chain), own, borrowed(joints), held, borrowed(limits), np.roll(fresh[a:b], -k), before,
+                at[order],
+            )  # fmt: skip
+            keep_alive((chain, joints))
         # Back to the first joint of the source, or the next node after it.
         r, first = run.shape[1], 0
         while first < r and nodes[first] + k < m:

@@ -117,9 +117,9 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
         after, before = sides(run, k)
         if after >= 0 or before >= 0:
             number[k], n = n, n + 5
-    A, g, first = np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64)
+    A, g, begins, first = np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64), np.empty(n, dtype=np.int64)
     for k in range(n if not run.closed else n - 10):  # the last two nodes of a closed run go with the first
-        first[k] = max(0, 5 * (k // 5 - 2))
+        begins[k] = max(0, 5 * (k // 5 - 2))
     N = len(joints.places)
     x, weight, e, c = np.empty(N), np.ones(N), np.zeros(N), np.empty((3, 2))
     J, spread, own = np.zeros((4, 2, 10)), np.zeros((2, 2, 5)), np.empty((10, 11))
@@ -154,6 +154,10 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
         for s in range(r if run.closed else r - 1):  # the joint between cubic s and the next
             add_joint(run, s, em, A, g, number, run.ease[s + 1] * min(1.0, 0.25 + 0.25 * m))
         damp(run, A, number, tolerance)
+        for k in range(n):  # unknowns that move nothing, and pairs that have no equation
+            first[k] = begins[k]
+            while first[k] < k and A[k, first[k]] == 0.0:
+                first[k] += 1
         solve(A, g, first, n)
         if not moved(run, g, number, tolerance):
             break

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...compiled import compiled, inlined
 from ...curves.cubics import hidden_extrema, length
+from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray
 from .corners import Joints
 from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, end_curvature, end_jump, sides
@@ -36,6 +37,10 @@ HIDDEN_PRICE = 10.0
 MET, NO_KINK, FAREST = 0.095, np.radians(0.45), 0.5
 """Jump of curvature and turn of a joint at which curvatures are made to meet; and the mean squared distance, in
 tolerances, of a cubic beyond which they are not."""
+
+STEPS = (0.0, -1.0, 1.0, -2.0, 2.0)
+NEARBY = tuple(sorted(((x, y) for x in STEPS for y in STEPS), key=lambda step: step[0] ** 2 + step[1] ** 2))
+"""Moves of a node along an axis, and in both, the smallest first."""
 
 
 class Measure(NamedTuple):
@@ -61,7 +66,8 @@ def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
     source has it.
     """
     r, P = len(run.P), run.P
-    measure, c = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r), np.empty((2, 4, 5)), np.empty(2)), np.empty((3, 2))
+    owned, c = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r), np.empty((2, 4, 5)), np.empty(2)), np.empty((3, 2))
+    measure = borrowed(owned)
     for s in range(r):
         if run.held[s]:
             continue
@@ -75,7 +81,8 @@ def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
         if run.held[(s + 1) % r] or (s == r - 1 and not run.closed):
             P[s, 3] = measure.exact[s, 3]
     nodes = r if run.closed else r + 1
-    room, best = np.empty((270, 3, 2)), np.empty((3, 2))
+    work = np.empty((270, 3, 2)), np.empty((3, 2)), np.empty((2, 4)), np.empty((2, 3))
+    room, best, seen, parts = borrowed(work)
     waiting, later = np.ones(nodes, dtype=np.bool_), np.zeros(nodes, dtype=np.bool_)
     for _ in range(SWEEPS):
         later[:] = False
@@ -84,13 +91,14 @@ def round_run(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
             if (after < 0 and before < 0) or not waiting[k]:
                 continue
             waiting[k] = False
-            if improve(run, k, before, after, measure, em, room, best):
+            if improve(run, k, before, after, measure, em, room, best, seen, parts):
                 # Costs reach as far as the joints beside the neighbours.
                 for away in range(-2, 3):
                     o = (k + away) % nodes if run.closed else min(max(k + away, 0), nodes - 1)
                     waiting[o] = later[o] = True
         if not later.any():
             break
+    keep_alive((owned, work))
 
 
 @compiled
@@ -104,42 +112,69 @@ def turn_cost(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @compiled
-def joint_cost(run: Run, k: int, em: float, least: float) -> float:
-    """What the turn and the jump of curvature at a node cost; at least ``least`` where it would be that much."""
-    r, P = len(run.P), run.P
-    if not run.closed and k in (0, r):
-        if run.kind[k] == FIXED:
-            return 0.0
-        p, end = (P[0], 0) if k == 0 else (P[r - 1], 1)
-        sign = 1 - 2 * end
-        x, y = sign * (p[1 + end, 0] - p[3 * end, 0]), sign * (p[1 + end, 1] - p[3 * end, 1])
-        return turn_cost(run.T[k, 0], run.T[k, 1], x, y)
-    p, q = P[k - 1], P[k % r]
-    cost = turn_cost(p[3, 0] - p[2, 0], p[3, 1] - p[2, 1], q[1, 0] - q[0, 0], q[1, 1] - q[0, 1])
-    if cost >= least:
-        return cost
-    jump = min(end_jump(p, q, em), 1.0)
-    return cost + run.ease[k] * (0.25 * (jump / JUMP) ** 2 + (JUMP_PRICE if jump > JUMP else 0.0))
+def end_cost(run: Run, k: int) -> float:
+    """What the turn from the tangent at the first or last node of a run costs, but at a corner."""
+    if run.kind[k] == FIXED:
+        return 0.0
+    p, i, j = (run.P[0], 0, 1) if k == 0 else (run.P[k - 1], 2, 3)
+    return turn_cost(run.T[k, 0], run.T[k, 1], p[j, 0] - p[i, 0], p[j, 1] - p[i, 1])
 
 
 @compiled
-def cost_at(run: Run, k: int, before: int, after: int, measure: Measure, em: float, least: float) -> float:
+def joint_cost(P: FloatArray, s: int, q: int, ease: float, em: float, least: float) -> float:
+    """What the turn and the jump of curvature cost where cubic q follows on cubic s, jumps by their weight; at least
+    ``least`` where it would be that much."""
+    cost = turn_cost(
+        P[s, 3, 0] - P[s, 2, 0], P[s, 3, 1] - P[s, 2, 1], P[q, 1, 0] - P[q, 0, 0], P[q, 1, 1] - P[q, 0, 1]
+    )
+    if cost >= least:
+        return cost
+    jump = min(end_jump(P[s], P[q], em), 1.0)
+    return cost + ease * (0.25 * (jump / JUMP) ** 2 + (JUMP_PRICE if jump > JUMP else 0.0))
+
+
+@inlined
+def cost_at(
+    run: Run, k: int, before: int, after: int, measure: Measure, em: float, least: float, seen: FloatArray,
+    parts: FloatArray,
+) -> float:  # fmt: skip
     """What changes with the points at a node: distances of the cubics there, and joints up to the next nodes.
 
     At least ``least`` where it would be that much.
+
+    Args:
+        seen: (2, 4) the points that move of the cubics before and after the node, at the last call. parts: (2, 3) what
+            each cost by itself, as far as that was needed: its distance, extrema, and the joint at its other end.
     """
-    r, total = len(run.P), joint_cost(run, k, em, least)
+    r, P, ease, far = len(run.P), run.P, run.ease, 0.0
+    for side, s in enumerate((before, after)):
+        if s < 0:
+            continue
+        u, own, part = 2 - 2 * side, seen[side], parts[side]
+        if P[s, u, 0] != own[0] or P[s, u, 1] != own[1] or P[s, u + 1, 0] != own[2] or P[s, u + 1, 1] != own[3]:
+            own[0], own[1], own[2], own[3] = P[s, u, 0], P[s, u, 1], P[s, u + 1, 0], P[s, u + 1, 1]
+            part[0] = squares(P[s, u : u + 2], measure.exact[s, u : u + 2], measure.form[side], measure.base[side])
+            part[1] = part[2] = -1.0
+        far += part[0]
+        if far >= least:
+            return far
+    left, right = k - 1 if k > 0 else r - 1, k if k < r else 0
+    inner = run.closed or 0 < k < r
+    total = joint_cost(P, left, right, ease[right], em, least) if inner else end_cost(run, k)
+    for side, s in enumerate((before, after)):
+        if s >= 0:
+            total += parts[side, 0]
     for side, s in enumerate((before, after)):
         if s >= 0 and total < least:
-            a, b = 2 - 2 * side, 4 - 2 * side
-            total += squares(run.P[s, a:b], measure.exact[s, a:b], measure.form[side], measure.base[side])
-    for s in (before, after):
-        if s >= 0 and total < least and hidden_extrema(run.P[s]) > run.extrema[s]:
-            total += HIDDEN_PRICE
-    if total < least and before >= 0 and (run.closed or k > 1):
-        total += joint_cost(run, (k - 1) % r, em, least - total)
-    if total < least and after >= 0 and (run.closed or k + 1 < r):
-        total += joint_cost(run, (k + 1) % r if run.closed else k + 1, em, least - total)
+            if parts[side, 1] < 0.0 or r < 3:
+                parts[side, 1] = HIDDEN_PRICE if hidden_extrema(P[s]) > run.extrema[s] else 0.0
+            total += parts[side, 1]
+    for side, s in enumerate((before, after)):
+        if s >= 0 and total < least and (run.closed or 0 < k - 1 + 2 * side < r):
+            if parts[side, 2] < 0.0 or r < 3:  # where both sides meet again
+                q = s + side if s + side < r else 0
+                parts[side, 2] = joint_cost(P, q - 1, q, ease[q], em, np.inf)
+            total += parts[side, 2]
     return total
 
 
@@ -232,7 +267,8 @@ def set_place(found: FloatArray, code: int, place: FloatArray) -> None:
 
 @compiled
 def improve(
-    run: Run, k: int, before: int, after: int, measure: Measure, em: float, room: FloatArray, best: FloatArray
+    run: Run, k: int, before: int, after: int, measure: Measure, em: float, room: FloatArray, best: FloatArray,
+    seen: FloatArray, parts: FloatArray,
 ) -> bool:  # fmt: skip
     """Give a node and its handles the cheapest of the neighbouring places on the grid; whether they changed."""
     P, start = run.P, best
@@ -249,18 +285,18 @@ def improve(
             measure.base[side] = reduced(
                 P[s], measure.exact[s], measure.own[s], measure.rest[s], 2 - 2 * side, measure.form[side]
             )
-    least, changed = cost_at(run, k, before, after, measure, em, np.inf), False
+    least, changed, seen[:] = np.inf, False, np.nan
     turns = run.kind[k] == FREE and before >= 0 and after >= 0
-    for code in range(candidates(run.kind[k], run.T[k, 0], run.T[k, 1], start, before >= 0, after >= 0, room)):
-        if turns:
-            a, b, c = room[code]
+    for code in range(-1, candidates(run.kind[k], run.T[k, 0], run.T[k, 1], start, before >= 0, after >= 0, room)):
+        place = start if code < 0 else room[code]
+        if turns and code >= 0:
+            a, b, c = place
             if turn_cost(b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]) >= least:
                 continue
-        put_points(run, before, after, room[code], k)
-        cost = cost_at(run, k, before, after, measure, em, least)
+        put_points(run, before, after, place, k)
+        cost = cost_at(run, k, before, after, measure, em, least, seen, parts)
         if cost < least - 1e-9:
-            least, changed = cost, True
-            best[:] = room[code]
+            least, changed, best[:] = cost, code >= 0, place
     put_points(run, before, after, best, k)
     return changed
 
@@ -268,14 +304,14 @@ def improve(
 @compiled
 def side_places(
     run: Run, s: int, end: int, level: int, dx: float, dy: float, form: FloatArray, exact: FloatArray, rest: float,
-    far: tuple[float, float, float, bool], em: float, found: FloatArray,
+    far: tuple[float, float, float, bool], em: float, dearest: float, found: FloatArray,
 ) -> int:  # fmt: skip
     """Places of the two inner points of cubic s when the node at one end of it moves by (dx, dy).
 
     Args:
         level: the axis on which the handle there stays level; -1 if it may turn. form, exact, rest: see
             :func:`.nearness.squares`. far: the vector in which the next cubic begins at the other end, its curvature
-            there, and whether that end's handle stays.
+            there, and whether that end's handle stays. dearest: the cost from which places are left out.
         found: (2025, 8) receives the cost, the curvature, the handle's vector, and both points.
 
     Returns:
@@ -298,6 +334,8 @@ def side_places(
             turn = abs(np.arctan2(bx * uy - by * ux, -(bx * ux + by * uy)))
             if turn > max(was, NO_KINK) or turn < min(was, 0.22):
                 continue
+        if step >= 0 and least_square(own, exact, part, base, b) >= dearest:
+            continue
         size = max(length(bx, by), 1e-9)
         for code in range(-1, 13 if level >= 0 else 81):
             if level >= 0:
@@ -321,13 +359,26 @@ def side_places(
             if jump and not jumped and beyond < np.inf:
                 continue
             cost = squares(own[1:3], exact[1:3], part, base)
-            if cost < FAREST and hidden_extrema(own) <= run.extrema[s]:
+            if cost < dearest and hidden_extrema(own) <= run.extrema[s]:
                 found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / length(ax, ay) ** 3
                 found[count, 2], found[count, 3] = ax, ay
                 found[count, 4], found[count, 5] = own[h, 0], own[h, 1]
                 found[count, 6], found[count, 7] = own[b, 0], own[b, 1]
                 count += 1
     return count
+
+
+@compiled
+def least_square(points: FloatArray, exact: FloatArray, form: FloatArray, rest: float, b: int) -> float:
+    """The least of :func:`.nearness.squares` of the inner points of a cubic (4, 2), of which point b stays."""
+    u, v, i, j = points[b, 0] - exact[b, 0], points[b, 1] - exact[b, 1], 2 * b - 2, 4 - 2 * b
+    rest += u * (form[i, i] * u - 2 * form[i, 4]) + v * (form[i + 1, i + 1] * v + 2 * (form[i + 1, i] * u - form[i + 1, 4]))
+    x = form[j, 4] - form[j, i] * u - form[j, i + 1] * v
+    y = form[j + 1, 4] - form[j + 1, i] * u - form[j + 1, i + 1] * v
+    a, c, d = form[j, j], form[j + 1, j], form[j + 1, j + 1]
+    size = a * d - c * c
+    # Rounding may leave a little less than the least.
+    return rest - (d * x * x - 2 * c * x * y + a * y * y) / size - 1e-9 if size > 1e-9 * a * d else 0.0
 
 
 @inlined
@@ -369,11 +420,14 @@ def meet(run: Run, k: int, joints: Joints, i: int, tolerance: float, em: float, 
     one, two, least = beyond_end(run, a, 0), beyond_end(run, q, 1), np.inf
     best = np.empty((5, 2))
     for code in range(5 if level >= 0 else 25):
-        dx, dy = (code - 2.0, 0.0) if level >= 0 else (code % 5 - 2.0, code // 5 - 2.0)
-        if level == 0:
-            dx, dy = dy, dx
-        before = side_places(run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, room[0])
-        after = side_places(run, q, 0, level, dx, dy, forms[1], exact[1], rest[1], two, em, room[1])
+        dx, dy = NEARBY[code] if level < 0 else (0.0, STEPS[code]) if level == 0 else (STEPS[code], 0.0)
+        before = side_places(run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, min(FAREST, least), room[0])
+        left = np.inf
+        for u in range(before):
+            left = min(left, room[0, u, 0])
+        if before == 0 or left >= least:
+            continue
+        after = side_places(run, q, 0, level, dx, dy, forms[1], exact[1], rest[1], two, em, min(FAREST, least - left), room[1])
         for u in range(before):
             if room[0, u, 0] >= least:
                 continue
