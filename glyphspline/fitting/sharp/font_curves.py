@@ -350,14 +350,14 @@ def let_meet(
         # Where a check found something even in a try that left curvatures alone, it would find it again.
         stays[s] = EASE[start[k]] == 0.0 or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
     met, seen = 0, np.full(r, -1)  # nodes that met since, and how many had when a node was last tried
-    for node in range(2 * r):  # once more by nearby places: one that does not meet may do so when others have
+    for node in range(2 * r):  # once more: one that does not meet may do so when others have
         q = node % r
-        if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q]:
+        if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q] or seen[q] == met:
             continue
         if joint_turn(P[0, q - 1 : q] if q > 0 else P[0, r - 1 :], P[0, q : q + 1]) > SMOOTH_KINK:
             continue
-        for wide in range(WIDEST + 1 if node < r else 1):
-            if end_jump(P[0, q - 1], P[0, q], limits.em) <= 0.1 or (wide == 0 and seen[q] == met):
+        for wide in range(WIDEST + 1):
+            if end_jump(P[0, q - 1], P[0, q], limits.em) <= 0.1:
                 break
             settled = away_from(q, max(wide, 1), stays, closed)
             owned = as_run(
@@ -368,8 +368,7 @@ def let_meet(
                 P[0] = run.P
                 met += 1
             keep_alive(owned)
-            if wide == 0:
-                seen[q] = met
+        seen[q] = met
 
 
 @compiled

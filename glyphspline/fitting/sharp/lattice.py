@@ -124,9 +124,7 @@ def end_cost(run: Run, k: int) -> float:
 def joint_cost(P: FloatArray, s: int, q: int, ease: float, em: float, least: float) -> float:
     """What the turn and the jump of curvature cost where cubic q follows on cubic s, jumps by their weight; at least
     ``least`` where it would be that much."""
-    cost = turn_cost(
-        P[s, 3, 0] - P[s, 2, 0], P[s, 3, 1] - P[s, 2, 1], P[q, 1, 0] - P[q, 0, 0], P[q, 1, 1] - P[q, 0, 1]
-    )
+    cost = turn_cost(P[s, 3, 0] - P[s, 2, 0], P[s, 3, 1] - P[s, 2, 1], P[q, 1, 0] - P[q, 0, 0], P[q, 1, 1] - P[q, 0, 1])
     if cost >= least:
         return cost
     jump = min(end_jump(P[s], P[q], em), 1.0)
@@ -372,7 +370,9 @@ def side_places(
 def least_square(points: FloatArray, exact: FloatArray, form: FloatArray, rest: float, b: int) -> float:
     """The least of :func:`.nearness.squares` of the inner points of a cubic (4, 2), of which point b stays."""
     u, v, i, j = points[b, 0] - exact[b, 0], points[b, 1] - exact[b, 1], 2 * b - 2, 4 - 2 * b
-    rest += u * (form[i, i] * u - 2 * form[i, 4]) + v * (form[i + 1, i + 1] * v + 2 * (form[i + 1, i] * u - form[i + 1, 4]))
+    rest += u * (form[i, i] * u - 2 * form[i, 4]) + v * (
+        form[i + 1, i + 1] * v + 2 * (form[i + 1, i] * u - form[i + 1, 4])
+    )
     x = form[j, 4] - form[j, i] * u - form[j, i + 1] * v
     y = form[j + 1, 4] - form[j + 1, i] * u - form[j + 1, i + 1] * v
     a, c, d = form[j, j], form[j + 1, j], form[j + 1, j + 1]
@@ -421,13 +421,17 @@ def meet(run: Run, k: int, joints: Joints, i: int, tolerance: float, em: float, 
     best = np.empty((5, 2))
     for code in range(5 if level >= 0 else 25):
         dx, dy = NEARBY[code] if level < 0 else (0.0, STEPS[code]) if level == 0 else (STEPS[code], 0.0)
-        before = side_places(run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, min(FAREST, least), room[0])
+        before = side_places(
+            run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, min(FAREST, least), room[0]
+        )
         left = np.inf
         for u in range(before):
             left = min(left, room[0, u, 0])
         if before == 0 or left >= least:
             continue
-        after = side_places(run, q, 0, level, dx, dy, forms[1], exact[1], rest[1], two, em, min(FAREST, least - left), room[1])
+        after = side_places(
+            run, q, 0, level, dx, dy, forms[1], exact[1], rest[1], two, em, min(FAREST, least - left), room[1]
+        )
         for u in range(before):
             if room[0, u, 0] >= least:
                 continue
