@@ -268,7 +268,11 @@ def improve(
     run: Run, k: int, before: int, after: int, measure: Measure, em: float, room: FloatArray, best: FloatArray,
     seen: FloatArray, parts: FloatArray,
 ) -> bool:  # fmt: skip
-    """Give a node and its handles the cheapest of the neighbouring places on the grid; whether they changed."""
+    """Give a node and its handles the cheapest of the neighbouring places on the grid; whether they changed.
+
+    Args:
+        room, best: (270, 3, 2), (3, 2) of work: the places, and the cheapest. seen, parts: of :func:`cost_at`.
+    """
     P, start = run.P, best
     for axis in range(2):
         start[1, axis] = P[after, 0, axis] if after >= 0 else P[before, 3, axis]
