@@ -324,13 +324,14 @@ def quadratics(points: FloatArray, on: BoolArray) -> tuple[FloatArray, IntArray,
     """
     if on[-1] and not on[0]:
         points, on = np.roll(points, 1, axis=1), np.roll(on, 1)
-    implied = ~on & ~np.roll(on, 1)
+    before = np.arange(len(on)) - 1
+    implied = ~(on | on[before])
     places = np.arange(len(on)) + np.cumsum(implied)
     midway = places[implied] - 1
     kinds = np.zeros(len(on) + len(midway))
     kinds[places], kinds[midway] = on, -1
     whole = np.empty((len(points), len(kinds), 2))
     whole[:, places] = points
-    whole[:, midway] = (points[:, implied] + np.roll(points, 1, axis=1)[:, implied]) / 2
+    whole[:, midway] = (points[:, implied] + points[:, before[implied]]) / 2
     starts = np.flatnonzero(kinds)
-    return whole, np.diff([*starts, len(kinds)]), kinds[starts] < 0
+    return whole, np.diff(np.append(starts, len(kinds))), kinds[starts] < 0

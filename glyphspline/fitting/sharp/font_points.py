@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ...checks.segments import WHAT
+from ...checks.segments import CONTOUR, WHAT
 from ...curves.cubics import turns
-from ...outlines.contour_arrays import ContourArrays, offsets_of
+from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ...outlines.masters import quadratics
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
@@ -37,13 +37,20 @@ def quadratic_points(
     Returns:
         These, and a bound of their distance from the source.
     """
-    found, reached = [], 0.0
-    for c in range(source.num_contours):
-        own = source.part(c, c + 1)
-        points, on, far = quadratic_contour([own], stored_points(own), ONE, ONE, options, tolerance, em)
-        found.append((points[0], on))
-        reached = max(reached, far)
-    return found, reached
+    parts = [source.part(c, c + 1) for c in range(source.num_contours)]
+    stored = [stored_points(own) for own in parts]
+    found = [
+        quadratic_contour([own], points, ONE, ONE, options, tolerance, em)
+        for own, points in zip(parts, stored, strict=True)
+    ]
+    fewer = {c: own for c, own in enumerate(stored) if own is not None and len(found[c][1]) < len(own[1])}
+    if fewer:
+        made = joined([of_points(found[c][0][0], found[c][1]) for c in fewer])
+        more = more_findings(source.chosen([*fewer]), made, em)
+        for own, (c, points) in zip(more.tolist(), fewer.items(), strict=True):
+            if own:
+                found[c] = (*points, as_stored(all_cubics(parts[c])[None], points).drift)
+    return [(points[0], on) for points, on, _ in found], max((far for *_, far in found), default=0.0)
 
 
 def quadratic_contour(
@@ -59,25 +66,21 @@ def quadratic_contour(
     Returns:
         Also a bound of their distance from the source.
     """
-
-    def fit(cubics: FloatArray, degrees: IntArray) -> Made:
-        settings = EFFORTS[options.effort](
-            near=tolerance if stored else tolerance / DENSER, angle=float(np.radians(options.corner_angle)),
-            line=LONG_LINE * em, c2=False, margin=0.0, residual=0.0,
-        )  # fmt: skip
-        return fit_quadratics(
-            cubics, degrees, settings, tolerance, as_stored(cubics, degrees, stored, stays), corners, mixes
-        )
-
     cubics, degrees = np.stack([all_cubics(master) for master in sources]), sources[0].degrees
-    points, on, far = made = fit(cubics, degrees)
+    settings = EFFORTS[options.effort](
+        near=tolerance if stored else tolerance / DENSER, angle=float(np.radians(options.corner_angle)),
+        line=LONG_LINE * em, c2=False, margin=0.0, residual=0.0,
+    )  # fmt: skip
     if stored is None:
+
+        def fit(cubics: FloatArray, degrees: IntArray) -> Made:
+            return fit_quadratics(cubics, degrees, settings, tolerance, unstored(cubics, degrees), corners, mixes)
+
+        made = fit(cubics, degrees)
         return slid(sources[0], fit, made, tolerance) if len(sources) == 1 else made
-    if 0 < len(on) < len(stored[1]) and (
-        len(sources) > 1 or not _more_findings(sources[0], of_points(points[0], on), em)
-    ):
-        return (*begun_as(points, on, stored), far)
-    return (*stored, as_stored(cubics, degrees, stored).drift)
+    own = as_stored(cubics, stored, stays)
+    points, on, far = fit_quadratics(cubics, degrees, settings, tolerance, own, corners, mixes)
+    return (*begun_as(points, on, stored), far) if 0 < len(on) < len(stored[1]) else (*stored, own.drift)
 
 
 def rounded_nodes(cubics: FloatArray, degrees: IntArray) -> FloatArray:
@@ -104,21 +107,21 @@ def off_way(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.abs(np.arctan2(a[0] * b[..., 1] - a[1] * b[..., 0], b @ a))
 
 
-def as_stored(
-    cubics: FloatArray, degrees: IntArray, stored: tuple[FloatArray, BoolArray] | None, stays: BoolArray | None = None
-) -> Stored:  # fmt: skip
+def unstored(cubics: FloatArray, degrees: IntArray) -> Stored:
+    """What there is of a contour (K, m, 4, 2) of which nothing is stored: where its segments begin."""
+    (K, m), no = cubics.shape[:2], np.zeros(len(degrees), np.bool_)
+    return Stored(False, rounded_nodes(cubics, degrees), np.empty((K, m, 2)), no, 0.0, no)
+
+
+def as_stored(cubics: FloatArray, stored: tuple[FloatArray, BoolArray], stays: BoolArray | None = None) -> Stored:
     """What is stored of a contour (K, m, 4, 2) by its segments."""
-    K, m = cubics.shape[:2]
-    if stored is None:
-        nothing, node = np.empty((K, m, 2)), rounded_nodes(cubics, degrees)
-        return Stored(False, node, nothing, np.zeros(m, np.bool_), 0.0, np.zeros(m, np.bool_))
     points, degrees, implied = quadratics(*stored)
     starts = np.cumsum(degrees) - degrees
     node, control = points[:, starts], points[:, np.minimum(starts + 1, points.shape[1] - 1)]
     exact = np.where((degrees == 2)[:, None], (3 * cubics[:, :, 1] - cubics[:, :, 0]) / 2, control)
     drift = max(np.abs(each).max() for each in (node - cubics[:, :, 0], control - exact))
     node, control = (np.ascontiguousarray(each) for each in (node, control))
-    stays = np.zeros(m, np.bool_) if stays is None else stays
+    stays = np.zeros(len(degrees), np.bool_) if stays is None else stays
     return Stored(True, node, control, implied, float(np.sqrt(2) * drift), stays)
 
 
@@ -237,14 +240,13 @@ def stored_points(contour: ContourArrays) -> tuple[FloatArray, BoolArray] | None
     """
     if (contour.degrees > 2).any():
         return None
-    points, first = contour.points, offsets_of(contour.degrees)
-    on = np.zeros(len(points), dtype=np.bool_)
-    on[first[:-1]] = True
-    curved = (contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)
-    middle = (np.roll(points, 1, axis=0) + np.roll(points, -1, axis=0)) / 2
-    implied = np.zeros(len(points), dtype=np.bool_)
-    implied[first[:-1][curved]] = True
-    implied &= (np.abs(middle - points) < 1e-6).all(axis=1)
+    points, first = contour.points, offsets_of(contour.degrees)[:-1]
+    on, implied = np.zeros((2, len(points)), dtype=np.bool_)
+    on[first] = True
+    curved = contour.degrees == 2
+    inner = first[curved & curved[np.arange(len(first)) - 1]]
+    middle = (points[inner - 1] + points[(inner + 1) % len(points)]) / 2
+    implied[inner] = (np.abs(middle - points[inner]) < 1e-6).all(axis=1)
     points, on = points[~implied], on[~implied]
     if np.abs(points - np.rint(points)).max() > 1e-6:
         return None
@@ -266,7 +268,11 @@ def begun_as(points: FloatArray, on: BoolArray, stored: tuple[FloatArray, BoolAr
     return np.roll(points, -first, axis=1), np.roll(on, -first)
 
 
-def _more_findings(source: ContourArrays, made: ContourArrays, em: float) -> bool:
-    """Whether a check finds more of a kind in what was made of a contour."""
-    before, after = (np.bincount(findings(each, em)[:, WHAT].astype(np.int64), minlength=20) for each in (source, made))
-    return bool((after > before).any())
+def more_findings(source: ContourArrays, made: ContourArrays, em: float) -> BoolArray:
+    """(C,) whether a check finds more of a kind in contours than in those of which they were made."""
+    kinds = 20
+    before, after = (
+        np.bincount((kinds * each[:, CONTOUR] + each[:, WHAT]).astype(np.int64), minlength=kinds * source.num_contours)
+        for each in (findings(source, em), findings(made, em))
+    )
+    return (after > before).reshape(-1, kinds).any(axis=1)

@@ -20,6 +20,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import length
+from ...intrinsics import borrowed, keep_alive
 from ...outlines.segments import farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
 from .font_chains import Quads, as_cubics, part, relax, set_nodes, set_tangents
@@ -150,30 +151,34 @@ def fewest(
 
 
 @compiled
-def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float) -> Quads:
-    """The quadratics of the sections between the joints ``ends`` of a run, each as its tries say."""
+def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float, known: IntArray) -> Quads:
+    """The quadratics of the sections between the joints ``ends`` of a run, each as its tries say.
+
+    Args:
+        known: (S, 4) of each section, from call to call: the tries for which was found what follows, -1 at first; the
+            number of quadratics; whether they are near enough, and begin or end along lines.
+    """
     K, S, samples, stored = len(given.cubics), len(tries), given.joints.samples, given.stored
     room, R = MOST * (ends[S] - ends[0] + 2 * S) + MORE[-1] * S, 0
-    q = Quads(
+    made = Quads(
         np.empty((K, room, 2)), np.empty((K, room + 1, 2)), np.ones(room + 1, np.bool_), np.zeros((K, room + 1, 2)),
         np.zeros((K, room + 1, 2)), np.full(room + 1, KINK), np.full(room + 1, KINK), np.zeros((room, 2), np.bool_),
         np.zeros(room, np.bool_), np.zeros(room, np.bool_), np.empty(room, np.int64), np.empty(room + 1, np.int64),
     )  # fmt: skip
+    q = borrowed(made)
     for f in range(S):
         a, b = ends[f], ends[f + 1]
-        near, found = (NEAR[tries[f]] if stored.known else OTHERS[tries[f]]) * tolerance, False
-        most, count, level = b - a - 1 if stored.known else MOST * (b - a + 1), 0, False
-        if near > 0.0:
-            count, found = fewest(q, R, given, a, b, near, most, False)
-            if tries[f] < EXPLICIT and (given.level[a] or given.level[b]):
-                own_count, level = fewest(q, R, given, a, b, near, min(count + 1, most), True)
-                count, found = (own_count, True) if level else (count, found)
+        near, ready = (NEAR[tries[f]] if stored.known else OTHERS[tries[f]]) * tolerance, False
+        if known[f, 0] != tries[f]:
+            ready = find_fewest(q, R, given, a, b, near, tries[f], known[f])
+        count, found, level = known[f, 1], known[f, 2] == 1, known[f, 3] == 1
         if stored.known and not found:
             keep = near == 0.0 or tries[f] > 0
             count = b - a
             own = part(q, R, R + count)
             own.tied[:], own.fixed[:], own.held[:] = False, keep, keep
             own.c[:], own.lo[:], own.implied[:] = stored.control[:, a:b], given.joints.first[a : b + 1], True
+            own.T[:, 1:count] = given.joints.leaving[:, a + 1 : b]
             set_ends(own, given, a, b, False)
             if not keep:
                 own.tied[0, 0], own.tied[count - 1, 1] = not given.joints.corner[a], not given.joints.corner[b]
@@ -181,21 +186,37 @@ def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float) -
                 if k == 0 or (keep and not stored.implied[a + k]):
                     own.implied[k], own.node[:, k] = False, stored.node[:, a + k]
             own.implied[count], own.node[:, count] = False, stored.node[:, b % len(given.line)]
-        elif not stored.known:
-            count += MORE[tries[f]] if found else 0
-            while not begin(part(q, R, R + count), given, a, b, level):
-                count -= 1
-            relax(part(q, R, R + count), samples, near / 2)
         else:
-            begin(part(q, R, R + count), given, a, b, level)
-            relax(part(q, R, R + count), samples, near / 2)
+            more = MORE[tries[f]] if found and not stored.known else 0
+            if more > 0 or not ready:
+                count += more
+                while not begin(part(q, R, R + count), given, a, b, level):
+                    count -= 1
+                relax(part(q, R, R + count), samples, near / 2)
         stay = f > 0 and max(tries[f], tries[f - 1]) >= EXPLICIT
         q.implied[R] = f > 0 and (not stay or stored.implied[a])
         q.owner[R : R + count] = f
         R += count
-    whole = part(q, 0, R)
-    set_nodes(whole)
-    return whole
+    set_nodes(part(q, 0, R))
+    keep_alive(made)
+    return part(made, 0, R)
+
+
+@compiled
+def find_fewest(
+    q: Quads, R: int, given: Given, a: int, b: int, near: float, tries: int, known: IntArray
+) -> bool:  # fmt: skip
+    """Find the fewest quadratics from joint a to joint b, see :func:`assembled`; whether they are those in q from R."""
+    most, count, level, found = b - a - 1 if given.stored.known else MOST * (b - a + 1), 0, False, False
+    ready = near > 0.0
+    if ready:
+        count, ready = fewest(q, R, given, a, b, near, most, False)
+        found = ready
+        if tries < EXPLICIT and (given.level[a] or given.level[b]):
+            own_count, level = fewest(q, R, given, a, b, near, min(count + 1, most), True)
+            count, found, ready = (own_count, True, True) if level else (count, found, False)
+    known[0], known[1], known[2], known[3] = tries, count, found, level
+    return ready
 
 
 @compiled
@@ -291,9 +312,10 @@ def fit_run(
         ends = sections(given, i, j, cut)
         if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or reached <= tolerance)):
             continue
-        tries = np.full(len(ends) - 1, EXPLICIT if cut == 2 else 0)
+        tries, known = np.full(len(ends) - 1, EXPLICIT if cut == 2 else 0), np.full((len(ends) - 1, 4), -1)
         for _ in range(0 if stored.known and (n == 1 or stored.stays[i:j].any()) else ATTEMPTS):
-            q = assembled(given, ends, tries, tolerance)
+            made = assembled(given, ends, tries, tolerance, known)
+            q = borrowed(made)
             relax(q, samples, 0.1 * tolerance)
             if aim(q, tries, is_ring(given, i, j)):
                 relax(q, samples, 0.1 * tolerance)
@@ -308,6 +330,7 @@ def fit_run(
             if good or (not stored.known and rank < least and not done and (cut < 2 or far <= tolerance)):
                 least, reached, done = rank, far, done or good
                 count = put_points(q.c, q.node, q.implied, points, on)
+            keep_alive(made)
             if not again:
                 break
     if count > 0 and (count < own or not stored.known):
