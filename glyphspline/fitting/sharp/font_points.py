@@ -275,4 +275,5 @@ def more_findings(source: ContourArrays, made: ContourArrays, em: float) -> Bool
         np.bincount((kinds * each[:, CONTOUR] + each[:, WHAT]).astype(np.int64), minlength=kinds * source.num_contours)
         for each in (findings(source, em), findings(made, em))
     )
-    return (after > before).reshape(-1, kinds).any(axis=1)
+    more: BoolArray = (after > before).reshape(-1, kinds).any(axis=1)
+    return more
