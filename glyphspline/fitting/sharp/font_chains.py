@@ -8,6 +8,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import length
+from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
 from .cubics import solve
 from .nearness import add_samples, reweight, shared_feet
@@ -94,19 +95,21 @@ def set_moves(q: Quads, s: int, J: FloatArray) -> None:
 
 
 @compiled
-def relax(q: Quads, samples: FloatArray, enough: float) -> float:
+def relax(q: Quads, samples: FloatArray, enough: float, hopeless: float) -> float:
     """Move the control points nearest to the samples (K, N, 2), by least squares; the largest distance left.
 
     Args:
-        enough: the distance that ends this.
+        enough: the distance that ends this. hopeless: that from which two steps end it.
     """
     K, R, N = len(q.c), q.c.shape[1], samples.shape[1]
     n = 2 * R
-    A, g, first = np.zeros((K, n, n)), np.zeros((K, n)), np.zeros(n, dtype=np.int64)
+    work = (
+        np.zeros((K, n, n)), np.zeros((K, n)), np.zeros(n, dtype=np.int64), np.empty(N), np.zeros(N), np.ones(N),
+        np.empty((K, 3, 2)), np.empty((K, 4, 2)), np.empty((4, 2, 6)), np.empty((6, 7)),
+    )  # fmt: skip
+    A, g, first, x, e, weight, c, p, J, own = borrowed(work)
     for k in range(n):
         first[k] = max(0, 2 * (k // 2 - 2))
-    x, e, weight = np.empty(N), np.zeros(N), np.ones(N)
-    c, p, J, own = np.empty((K, 3, 2)), np.empty((K, 4, 2)), np.empty((4, 2, 6)), np.empty((6, 7))
     for s in range(R):
         for k in range(q.lo[s], q.lo[s + 1] + 1):
             x[k] = (k - q.lo[s]) / max(q.lo[s + 1] - q.lo[s], 1)
@@ -132,8 +135,8 @@ def relax(q: Quads, samples: FloatArray, enough: float) -> float:
                         g[w, at] += own[u, 6]
                         for v in range(max(0, 2 - 2 * s), u + 1):
                             A[w, at, at - u + v] += own[u, v]
-        if m == rounds or worst <= enough:
-            return worst
+        if m == rounds or worst <= enough or (m == 2 and worst > hopeless):
+            break
         for w in range(K):
             improve(q, w, A[w], g[w], first)
         set_nodes(q)
@@ -141,6 +144,8 @@ def relax(q: Quads, samples: FloatArray, enough: float) -> float:
             if not (q.held[s - 1] or q.held[s]):
                 share_samples(q, s, samples, x)
         m += 1
+    keep_alive(work)
+    return worst
 
 
 @compiled

@@ -275,5 +275,4 @@ def more_findings(source: ContourArrays, made: ContourArrays, em: float) -> Bool
         np.bincount((kinds * each[:, CONTOUR] + each[:, WHAT]).astype(np.int64), minlength=kinds * source.num_contours)
         for each in (findings(source, em), findings(made, em))
     )
-    more: BoolArray = (after > before).reshape(-1, kinds).any(axis=1)
-    return more
+    return np.any((after > before).reshape(-1, kinds), axis=1)

@@ -43,6 +43,9 @@ MOST = 4
 ATTEMPTS = 10
 """Tries of a run."""
 
+HOPELESS = 3.0
+"""Of what is near enough: how far quadratics may be after two steps before one more is tried."""
+
 
 @compiled
 def meeting(p: FloatArray, a: FloatArray, r: FloatArray, b: FloatArray, out: FloatArray) -> None:
@@ -145,7 +148,8 @@ def fewest(
             for k, s in ((own.lo[0], 0), (own.lo[count], count)):
                 x, y = own.node[w, s] - samples[w, k]
                 off = max(off, 1.05 * length(x, y))
-        if relax(own, samples, near / 2) <= max(near, off):
+        enough = max(near, off)
+        if relax(own, samples, near / 2, HOPELESS * enough) <= enough:
             return count, True
     return most, False
 
@@ -192,7 +196,7 @@ def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float, k
                 count += more
                 while not begin(part(q, R, R + count), given, a, b, level):
                     count -= 1
-                relax(part(q, R, R + count), samples, near / 2)
+                relax(part(q, R, R + count), samples, near / 2, np.inf)
         stay = f > 0 and max(tries[f], tries[f - 1]) >= EXPLICIT
         q.implied[R] = f > 0 and (not stay or stored.implied[a])
         q.owner[R : R + count] = f
@@ -316,9 +320,9 @@ def fit_run(
         for _ in range(0 if stored.known and (n == 1 or stored.stays[i:j].any()) else ATTEMPTS):
             made = assembled(given, ends, tries, tolerance, known)
             q = borrowed(made)
-            relax(q, samples, 0.1 * tolerance)
+            relax(q, samples, 0.1 * tolerance, np.inf)
             if aim(q, tries, is_ring(given, i, j)):
-                relax(q, samples, 0.1 * tolerance)
+                relax(q, samples, 0.1 * tolerance, np.inf)
             round_quads(q, samples, tolerance)
             bad, far, kinks = wrong_quads(q, given, i, j, tolerance)
             again = bad.any() and next_tries(q, bad, stored.known, tries)
