@@ -18,6 +18,7 @@ import numpy as np
 
 from ...compiled import compiled, inlined
 from ...curves.cubics import length
+from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints
 from .cubics import solve
@@ -117,12 +118,14 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
         after, before = sides(run, k)
         if after >= 0 or before >= 0:
             number[k], n = n, n + 5
-    A, g, begins, first = np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64), np.empty(n, dtype=np.int64)
+    N = len(joints.places)
+    work = (
+        np.zeros((n, n)), np.zeros(n), np.zeros(n, dtype=np.int64), np.empty(n, dtype=np.int64), np.empty(N),
+        np.ones(N), np.zeros(N), np.empty((3, 2)), np.zeros((4, 2, 10)), np.zeros((2, 2, 5)), np.empty((10, 11)),
+    )  # fmt: skip
+    A, g, begins, first, x, weight, e, c, J, spread, own = borrowed(work)
     for k in range(n if not run.closed else n - 10):  # the last two nodes of a closed run go with the first
         begins[k] = max(0, 5 * (k // 5 - 2))
-    N = len(joints.places)
-    x, weight, e, c = np.empty(N), np.ones(N), np.zeros(N), np.empty((3, 2))
-    J, spread, own = np.zeros((4, 2, 10)), np.zeros((2, 2, 5)), np.empty((10, 11))
     for s in range(r):
         a, b = joints.first[i + run.places[s]], joints.first[i + run.places[s + 1]]
         for k in range(a, b + 1):
@@ -161,6 +164,7 @@ def harmonise(run: Run, joints: Joints, i: int, tolerance: float, em: float) -> 
         solve(A, g, first, n)
         if not moved(run, g, number, tolerance):
             break
+    keep_alive(work)
 
 
 @compiled

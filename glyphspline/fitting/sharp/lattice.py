@@ -20,7 +20,7 @@ from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray
 from .corners import Joints
 from .harmony import AXIS, FIXED, FLAT, FREE, HELD, Run, end_curvature, end_jump, sides
-from .nearness import feet, reduced, sample_form, squares
+from .nearness import feet, reduced, sample_form, squares_of_two
 
 SWEEPS = 4
 """How often all nodes are visited; few move in the fourth."""
@@ -151,7 +151,9 @@ def cost_at(
         u, own, part = 2 - 2 * side, seen[side], parts[side]
         if P[s, u, 0] != own[0] or P[s, u, 1] != own[1] or P[s, u + 1, 0] != own[2] or P[s, u + 1, 1] != own[3]:
             own[0], own[1], own[2], own[3] = P[s, u, 0], P[s, u, 1], P[s, u + 1, 0], P[s, u + 1, 1]
-            part[0] = squares(P[s, u : u + 2], measure.exact[s, u : u + 2], measure.form[side], measure.base[side])
+            part[0] = squares_of_two(
+                P[s, u : u + 2], measure.exact[s, u : u + 2], measure.form[side], measure.base[side]
+            )
             part[1] = part[2] = -1.0
         far += part[0]
         if far >= least:
@@ -360,7 +362,7 @@ def side_places(
                 continue
             if jump and not jumped and beyond < np.inf:
                 continue
-            cost = squares(own[1:3], exact[1:3], part, base)
+            cost = squares_of_two(own[1:3], exact[1:3], part, base)
             if cost < dearest and hidden_extrema(own) <= run.extrema[s]:
                 found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / length(ax, ay) ** 3
                 found[count, 2], found[count, 3] = ax, ay

@@ -148,6 +148,22 @@ def squares(points: FloatArray, exact: FloatArray, own: FloatArray, rest: float)
     return rest
 
 
+@inlined
+def squares_of_two(points: FloatArray, exact: FloatArray, form: FloatArray, rest: float) -> float:
+    """The same of two points, without loops."""
+    a, b, c, d = (
+        points[0, 0] - exact[0, 0],
+        points[0, 1] - exact[0, 1],
+        points[1, 0] - exact[1, 0],
+        points[1, 1] - exact[1, 1],
+    )
+    rest += a * (form[0, 0] * a - 2 * form[0, 4])
+    rest += b * (form[1, 1] * b - 2 * form[1, 4] + 2 * form[1, 0] * a)
+    rest += c * (form[2, 2] * c - 2 * form[2, 4] + 2 * form[2, 0] * a + 2 * form[2, 1] * b)
+    rest += d * (form[3, 3] * d - 2 * form[3, 4] + 2 * form[3, 0] * a + 2 * form[3, 1] * b + 2 * form[3, 2] * c)
+    return rest
+
+
 @compiled
 def reduced(points: FloatArray, exact: FloatArray, own: FloatArray, rest: float, lo: int, form: FloatArray) -> float:
     """The form of :func:`squares` for two neighbouring points of a cubic (4, 2), while the other two stay.
