@@ -347,8 +347,7 @@ def let_meet(
     stays, ones, room = np.zeros(r, np.bool_), np.ones(len(start) + 1), np.empty((2, 2025, 8))
     for s in range(r):
         k = (i + places[s]) % m
-        # Where a check found something even in a try that left curvatures alone, it would find it again.
-        stays[s] = EASE[start[k]] == 0.0 or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
+        stays[s] = start[k] == KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
     met, seen = 0, np.full(r, -1)  # nodes that met since, and how many had when a node was last tried
     for node in range(2 * r):  # once more: one that does not meet may do so when others have
         q = node % r
