@@ -32,6 +32,9 @@ from .settings import EFFORTS, LONG_LINE, Settings
 GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
 """As how many tries the finding of a check counts, in each round; beyond ``KEPT`` the contour stays as it is."""
 
+TURNING = 19
+"""Beside the kinds of a check: a joint of curves that turns."""
+
 
 class Fitted(NamedTuple):
     """Contours fitted, in steps of the grid.
@@ -177,7 +180,7 @@ def fit_for_fonts(
     for master in sources:
         # Beside points that are rounded, a segment that is kept may be found wrong as if it were rounded too.
         written = findings(master.rounded(options.precision), em)
-        expected.append(np.concatenate([findings(master, em), written[written[:, WHAT] != KINK]]))
+        expected.append(np.concatenate([findings(master, em), written[~np.isin(written[:, WHAT], (KINK, TURNING))]]))
     for level in GATES:
         wrong, places = np.zeros(len(tries), dtype=np.bool_), [each.anchors for each in found]
         for v, (master, known) in enumerate(zip(sources, expected, strict=True)):
@@ -264,14 +267,14 @@ def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
 
 
 def findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 7) what a check finds at joints and in segments, see :data:`...checks.segments.WHAT`; and as kinks joints of
-    curves that turn less, which a check takes for rounding's."""
+    """(n, 7) what a check finds at joints and in segments, see :data:`...checks.segments.WHAT`; and as ``TURNING`` the
+    joints of curves that turn as kinks do, also those that a check takes for rounding's."""
     segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
     line = segments.degrees == 1
     sizes = np.abs(np.angle(segments.last[segments.before].conj() * segments.first))
     joints = np.flatnonzero((sizes > KINKED) & (sizes < CORNER) & ~(line & line[segments.before]))
     c = np.searchsorted(segments.offsets, joints, side="right") - 1
-    turning = rows(KINK, c, joints - segments.offsets[c], 0.0)
+    turning = rows(TURNING, c, joints - segments.offsets[c], 0.0)
     found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits), turning])
     return found[found[:, WHAT] != JUMP]
 
@@ -283,10 +286,10 @@ def _new_findings(
     wrong = np.zeros(len(source.degrees), dtype=np.bool_)
     for row in findings(curves, em):
         c, s = int(row[CONTOUR]), int(row[PLACE])
-        own, m = places[c][:, 1], int(np.diff(source.offsets)[c])
-        low, high = own[s] - (own[-1] - own[-2] if s == 0 else own[s] - own[s - 1]) * (row[WHAT] == KINK), own[s + 1]
+        own, m, at_joint = places[c][:, 1], int(np.diff(source.offsets)[c]), row[WHAT] in (KINK, TURNING)
+        low, high = own[s] - (own[-1] - own[-2] if s == 0 else own[s] - own[s - 1]) * at_joint, own[s + 1]
         alike = expected[(expected[:, CONTOUR] == c) & (expected[:, WHAT] == row[WHAT]), PLACE]
-        first, last = (own[s], own[s]) if row[WHAT] == KINK else (low, high)
+        first, last = (own[s], own[s]) if at_joint else (low, high)
         if ((alike - first + 0.5) % m <= last - first + 1.0).any():
             continue
         wrong[source.offsets[c] + _stretch(low, high, source, c)] = True
