@@ -12,10 +12,12 @@ from fontTools.ttLib import TTFont
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
+from glyphspline.checks.kinds import KINK
+from glyphspline.checks.segments import WHAT
 from glyphspline.cli.groups import for_fonts
 from glyphspline.curves.cubics import hidden_extrema, turns
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.fitting.sharp.font_fit import ONE
+from glyphspline.fitting.sharp.font_fit import ONE, TURNING, findings
 from glyphspline.fitting.sharp.font_points import of_points, quadratic_points, rounded_nodes, stored_points
 from glyphspline.fitting.sharp.harmony import FIXED, Run, end_jump
 from glyphspline.fitting.sharp.run_gates import Limits, misses
@@ -167,6 +169,16 @@ def test_decimals_do_not_keep_a_whole_contour_as_it_is() -> None:
     (found,) = gs.convert(replace(outline, contours=(source,)), OPTIONS).contours
     assert found.measures.within_tolerance
     assert len(found.curve) < 0.8 * len(source)
+
+
+def test_a_turn_that_a_check_excuses_beside_a_short_handle_is_expected_beside_no_longer_one() -> None:
+    points = [[-600, 20], [-400, 8], [-200, 0], [0, 0], [6, -1], [12, -1], [19, -2]]
+    points += [[141, -25], [300, -164], [300, -330], [-600, -330]]
+    source = gs.Contour(np.array(points, dtype=np.float64), np.array([3, 3, 3, 1, 1]))
+    whole = gs.Contour(np.delete(source.points, [4, 5, 6], axis=0), np.array([3, 3, 1, 1]))
+    kinds = [set(findings(gs.Outline("d", contours=(each,)).arrays, 1000.0)[:, WHAT]) for each in (source, whole)]
+    assert TURNING in kinds[0] & kinds[1]
+    assert KINK in kinds[1] - kinds[0]
 
 
 def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArrays, int, int]]:
