@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...checks.kinds import JUMP, KINK, THRESHOLDS
+from ...checks.kinds import JUMP, KINDS, KINK, THRESHOLDS
 from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
 from ...compiled import compiled
 from ...curves.nearest import near_places
@@ -32,7 +32,7 @@ from .settings import EFFORTS, LONG_LINE, Settings
 GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
 """As how many tries the finding of a check counts, in each round; beyond ``KEPT`` the contour stays as it is."""
 
-TURNING = 19
+TURNING = len(KINDS)
 """Beside the kinds of a check: a joint of curves that turns."""
 
 

@@ -14,7 +14,7 @@ from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
 from ..options import Options
 from .corners import NO_HANDLE
-from .font_fit import ONE, chains, findings
+from .font_fit import ONE, TURNING, chains, findings
 from .font_outlines import Stored
 from .font_quadratics import fit_contour as fit_quadratics
 from .run_gates import CORNER
@@ -270,7 +270,7 @@ def begun_as(points: FloatArray, on: BoolArray, stored: tuple[FloatArray, BoolAr
 
 def more_findings(source: ContourArrays, made: ContourArrays, em: float) -> BoolArray:
     """(C,) whether a check finds more of a kind in contours than in those of which they were made."""
-    kinds = 20
+    kinds = TURNING + 1
     before, after = (
         np.bincount((kinds * each[:, CONTOUR] + each[:, WHAT]).astype(np.int64), minlength=kinds * source.num_contours)
         for each in (findings(source, em), findings(made, em))
