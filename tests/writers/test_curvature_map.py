@@ -293,6 +293,15 @@ def test_png_shows_the_comb_in_its_colours() -> None:
     assert (np.abs(body - red).max(axis=2) < 40).sum() == 0
 
 
+@pytest.mark.parametrize("width", [400, 440, 460, 600])
+def test_title_and_legend_are_inside_a_png_of_any_proportion(width: float) -> None:
+    arc = np.array([[1, 0], [1, 0.55], [0.55, 1], [0, 1], [-0.55, 1], [-1, 0.55]])
+    oval = gs.Contour(np.concatenate([arc, -arc]) * (width, 400), np.full(4, 3))
+    pixels = imread(io.BytesIO(write_map(result(oval), Settings(), "png")))[..., :3]
+    edges = np.concatenate([pixels[:4], pixels[-4:]])
+    np.testing.assert_array_equal(edges, 1.0)
+
+
 def test_writing_svg_does_not_import_matplotlib() -> None:
     modules = "glyphspline.writers.svg.curvature_map, glyphspline.writers.figures.drawings, glyphspline.report"
     code = f"import sys, {modules}; sys.exit('matplotlib' in sys.modules)"

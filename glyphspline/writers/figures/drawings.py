@@ -17,6 +17,11 @@ from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, ring, sav
 SIZE = 6.0
 """Height in inches of a drawing that says none, and width and height of a map."""
 
+LAYOUTS, EDGE = 8, 0.02
+"""How often a map is laid out at most, and inches that are free at its edges then. A layout measures what is beside
+the axes before these shrink to one scale in x and y, with what is beside them: mostly one is enough, a square glyph
+takes four."""
+
 
 def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: Box | None = None) -> bytes:
     """What :func:`..svg.document.to_svg` draws, as a one-page PDF or as a PNG on white.
@@ -62,6 +67,11 @@ def write_map(
         scale = maps.scale_for(glyph.outline.metrics.units_per_em) or curvature_scale([glyph])
     figure = blank(SIZE, SIZE, layout="constrained")
     draw_map(figure.add_subplot(), glyph, maps.comb, scale, vertices, maps.corner_teeth)
+    for _ in range(LAYOUTS):
+        figure.get_layout_engine().execute(figure)
+        box = figure.get_tightbbox(figure.canvas.get_renderer())
+        if min(box.min) >= EDGE and max(box.max) <= SIZE - EDGE:
+            break
     return saved(figure, kind)
 
 
