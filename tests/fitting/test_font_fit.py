@@ -171,7 +171,7 @@ def test_decimals_do_not_keep_a_whole_contour_as_it_is() -> None:
     assert len(found.curve) < 0.8 * len(source)
 
 
-def test_a_turn_that_a_check_excuses_beside_a_short_handle_is_expected_beside_no_longer_one() -> None:
+def test_a_turn_that_a_check_excuses_beside_a_short_handle_is_told_apart_from_a_kink() -> None:
     points = [[-600, 20], [-400, 8], [-200, 0], [0, 0], [6, -1], [12, -1], [19, -2]]
     points += [[141, -25], [300, -164], [300, -330], [-600, -330]]
     source = gs.Contour(np.array(points, dtype=np.float64), np.array([3, 3, 3, 1, 1]))

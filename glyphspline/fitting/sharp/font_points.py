@@ -47,8 +47,8 @@ def quadratic_points(
     if fewer:
         made = joined([of_points(found[c][0][0], found[c][1]) for c in fewer])
         more = more_findings(source.chosen([*fewer]), made, em)
-        for own, (c, points) in zip(more.tolist(), fewer.items(), strict=True):
-            if own:
+        for worse, (c, points) in zip(more.tolist(), fewer.items(), strict=True):
+            if worse:
                 found[c] = (*points, as_stored(all_cubics(parts[c])[None], points).drift)
     return [(points[0], on) for points, on, _ in found], max((far for *_, far in found), default=0.0)
 

@@ -18,9 +18,8 @@ SIZE = 6.0
 """Height in inches of a drawing that says none, and width and height of a map."""
 
 LAYOUTS, EDGE = 8, 0.02
-"""How often a map is laid out at most, and inches that are free at its edges then. A layout measures what is beside
-the axes before these shrink to one scale in x and y, with what is beside them: mostly one is enough, a square glyph
-takes four."""
+"""How often a map is laid out at most, until so many inches are free at its edges. A layout measures title and legend
+before the axes shrink to one scale in x and y. Mostly one is enough; a glyph as wide as it is high takes some four."""
 
 
 def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: Box | None = None) -> bytes:
@@ -72,6 +71,7 @@ def write_map(
         box = figure.get_tightbbox(figure.canvas.get_renderer())
         if min(box.min) >= EDGE and max(box.max) <= SIZE - EDGE:
             break
+    figure.set_layout_engine("none")  # a figure is laid out once more where it is saved
     return saved(figure, kind)
 
 
