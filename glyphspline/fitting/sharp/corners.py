@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...checks.kinds import THRESHOLDS
+from ...checks.segments import rounding_turn
 from ...compiled import compiled
 from ...curves.cubics import directions, jet, length, turns
 from ...types import BoolArray, FloatArray, IntArray
@@ -21,6 +23,10 @@ NO_HANDLE = 1e-9
 
 SMOOTH_KINK = np.radians(3.0)
 """A line meets a curve smoothly if the source turns by less than this: twice what rounding to integers makes."""
+
+SHARP, DEVIATIONS = np.radians(THRESHOLDS.corner_angle), THRESHOLDS.rounding
+"""What a check goes by: the turn from which a joint is a corner, and up to how many standard deviations of what
+rounding to whole units turns a joint by that lets it pass."""
 
 BEND, KINK = 0.004, 0.065
 """A spline whose vertices are h apart misses an outline by about BEND h⁴ κ³ where it bends, and by KINK h sin θ where
@@ -70,6 +76,7 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
     first = np.searchsorted(places, np.arange(m + 1.0))
     bends = np.zeros(m)
     corner, hard, line = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.bool_), np.empty(m, np.bool_)
+    smooth = np.empty(m, np.bool_)
     for j in range(m):
         line[j] = degrees[j] == 1 and chord(samples, first[j], first[j + 1]) >= settings.line
     for v in range(masters):
@@ -81,17 +88,18 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
                 hard[j] = hard[j] or shows(samples[v], first[j], near, settings.angle)
     for j in range(m):
         hard[j] = hard[j] or line[j] or line[j - 1]
+        smooth[j] = bends[j] < SMOOTH_KINK or (not settings.c2 and is_roundings(cubics, degrees, j))
         kink = near / (KINK * np.sin(max(min(bends[j], np.pi / 2), 1e-9)))
         for i in (first[j], first[j] - 1):
             spacing[i] = min(spacing[i], kink)
     corner[m], hard[m] = corner[0], hard[0]
     arriving, leaving = np.empty((masters, m + 1, 2)), np.empty((masters, m + 1, 2))
     for v in range(masters):
-        set_directions(cubics[v], bends, corner, line, arriving[v], leaving[v])
+        set_directions(cubics[v], smooth, corner, line, arriving[v], leaving[v])
     tied = np.zeros(m + 1, dtype=np.bool_)
     if masters > 1:
         for j in range(m):
-            if line[j] != line[j - 1] and not corner[j] and bends[j] < SMOOTH_KINK:
+            if line[j] != line[j - 1] and not corner[j] and smooth[j]:
                 first_way, turn, straight = leaving[0, j], 0.0, cubics[:, j if line[j] else (j - 1) % m].copy()
                 for v in range(masters):
                     turn = max(turn, abs(leaving[v, j, 0] * first_way[1] - leaving[v, j, 1] * first_way[0]))
@@ -103,6 +111,25 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
                         leaving[v, j, axis] = arriving[v, j, axis]
         arriving[:, m], leaving[:, m], tied[m] = arriving[:, 0], leaving[:, 0], tied[0]
     return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
+
+
+@compiled
+def is_roundings(cubics: FloatArray, degrees: IntArray, j: int) -> bool:
+    """Whether rounding to whole units may have turned joint j of a contour (K, m, 4, 2) in all masters.
+
+    A check lets such a turn pass beside a short handle. What follows the outline has longer ones, beside which the same
+    turn would be a kink.
+    """
+    for own in cubics:
+        _, _, ax, ay = directions(own, j - 1, NO_HANDLE)
+        bx, by, _, _ = directions(own, j, NO_HANDLE)
+        one, two = 3 / degrees[j - 1] * length(ax, ay), 3 / degrees[j] * length(bx, by)
+        if not 0.0 < min(one, two):
+            return False
+        turn = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+        if turn >= min(SHARP, DEVIATIONS * rounding_turn(one, two)):
+            return False
+    return True
 
 
 @compiled
@@ -136,9 +163,13 @@ def sampled(cubics: FloatArray, places: FloatArray, tolerance: float) -> tuple[F
 
 @compiled
 def set_directions(
-    cubics: FloatArray, bends: FloatArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
+    cubics: FloatArray, smooth: BoolArray, corner: BoolArray, line: BoolArray, arriving: FloatArray, leaving: FloatArray
 ) -> None:
-    """The unit tangents of arcs that end at the joints of one master."""
+    """The unit tangents of arcs that end at the joints of one master.
+
+    Args:
+        smooth: (m,) whether a line would meet a curve smoothly there.
+    """
     m = len(cubics)
     for j in range(m):
         ax, ay, bx, by = directions(cubics, j, NO_HANDLE)
@@ -154,7 +185,7 @@ def set_directions(
         ax, ay, bx, by = arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1]
         x, y = ax + bx, ay + by
         if line[j] or line[j - 1]:
-            if not bends[j] < SMOOTH_KINK:
+            if not smooth[j]:
                 continue
             x, y = (bx, by) if line[j] else (ax, ay)
         else:

@@ -6,12 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...checks.kinds import THRESHOLDS
-from ...checks.segments import rounding_turn
 from ...compiled import compiled
 from ...curves.cubics import directions, length
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import NO_HANDLE, SMOOTH_KINK, Joints, find_joints
+from .corners import NO_HANDLE, SHARP, SMOOTH_KINK, Joints, find_joints, is_roundings
 from .font_curves import alone, set_upright
 from .run_gates import CORNER, KINK, mixed, turn_between
 from .settings import Settings
@@ -21,12 +19,6 @@ STEEP = np.radians(1.5)
 
 BLUNT = np.radians(20.0)
 """Turn from which a corner's sides may turn; less would soon be a kink."""
-
-SHARP = np.radians(THRESHOLDS.corner_angle)
-"""Turn from which a check takes a joint for a corner."""
-
-DEVIATIONS = THRESHOLDS.rounding
-"""Up to how many standard deviations of what rounding to whole units turns a joint by a check lets it pass."""
 
 MOVED = 2.5
 """How far the end of a handle may move to be level, in units: rounding both its ends moves it by 2 at most."""
@@ -94,7 +86,9 @@ def read_contour(
             _, _, way[0, w, j, 0], way[0, w, j, 1] = directions(cubics[w], j - 1, NO_HANDLE)
             way[1, w, j, 0], way[1, w, j, 1], _, _ = directions(cubics[w], j, NO_HANDLE)
         before, behind, most, fewest_turn = way[0, :, j], way[1, :, j], 0.0, np.inf
-        straight = not stored.known and straightened(before, behind, line[j - 1], line[j])
+        straight = not stored.known and is_roundings(cubics, degrees, j) and line[j - 1] + line[j] < 2
+        if straight:
+            straighten(before, behind, line[j - 1], line[j])
         for weights in mixes:
             (ax, ay), (bx, by) = mean(weights, before), mean(weights, behind)
             turn = turn_between(ax, ay, bx, by)
@@ -131,28 +125,14 @@ def read_contour(
 
 
 @compiled
-def straightened(before: FloatArray, behind: FloatArray, line_before: bool, line_behind: bool) -> bool:
-    """Give handles (K, 2) beside a joint one direction in each master if rounding may have turned it; whether that is so.
-
-    A check lets such a turn pass beside a short handle. What follows the outline has longer ones, beside which the same
-    turn would be a kink.
-    """
-    most = 0.0
-    for a, b in zip(before, behind):
-        one, two, turn = length(a[0], a[1]), length(b[0], b[1]), turn_between(a[0], a[1], b[0], b[1])
-        by_rounding = rounding_turn((3.0 if line_before else 1.0) * one, (3.0 if line_behind else 1.0) * two)
-        if not (0.0 < min(one, two) and turn < min(CORNER, DEVIATIONS * by_rounding)):
-            return False
-        most = max(most, turn)
-    if most <= KINK or (line_before and line_behind):
-        return False
+def straighten(before: FloatArray, behind: FloatArray, line_before: bool, line_behind: bool) -> None:
+    """Give handles (K, 2) beside a joint one direction in each master."""
     for a, b in zip(before, behind):
         one, two = length(a[0], a[1]), length(b[0], b[1])
         if stays(a, b, line_before, line_behind):
             b[0], b[1] = two / one * a[0], two / one * a[1]
         else:
             a[0], a[1] = one / two * b[0], one / two * b[1]
-    return True
 
 
 @compiled
