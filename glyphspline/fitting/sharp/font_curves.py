@@ -40,14 +40,16 @@ from .spline_curve import chord
 UPRIGHT = np.sin(np.radians(1.5))
 """Sine of the angle to an axis up to which the tangent at an extremum is the axis."""
 
-SHARES = (0.95, 0.8, 0.5, 0.2, 0.2, 0.0)
-"""Of the tolerance: how near a cubic is to be before it is moved and rounded, on each try of its stretch."""
+SHARES = (0.95, 0.8, 0.5, 0.2, 0.2, 0.0, 0.0)
+"""Of the tolerance: how near a cubic is to be before it is moved and rounded, on each try of its stretch. With 0 it is
+of one segment."""
 
-EASE = (1.0, 0.2, 0.1, 0.03, 0.0, 0.0)
+EASE = (1.0, 0.2, 0.1, 0.03, 0.0, 0.0, 0.0)
 """Weight of the curvatures at its ends, likewise."""
 
-KEPT = len(SHARES) - 1
-"""Tries after which a stretch stays as the source has it."""
+KEPT = len(SHARES) - 2
+"""Tries after which a stretch stays as the source has it; one of quadratics, which as cubics are not on the grid, is
+tried there once more."""
 
 ATTEMPTS = 20
 """Tries of a run before it stays as it is. With 10, EB Garamond has 5 more curves, in the same time."""
@@ -202,11 +204,11 @@ def chosen_nodes(
 @compiled
 def as_run(
     cubics: FloatArray, degrees: IntArray, joints: Joints, upright: BoolArray, i: int, closed: bool, r: int,
-    places: IntArray, P: FloatArray, share: FloatArray, ease: FloatArray, settled: BoolArray,
+    places: IntArray, P: FloatArray, stays: BoolArray, ease: FloatArray, settled: BoolArray,
 ) -> Run:  # fmt: skip
     """The r cubics of a run with what their nodes may do.
 
-    Cubics that are settled are held, and those without a share of the tolerance, which are the source's.
+    Cubics that are settled are held, and those of a segment that stays.
     """
     held, kind, T = np.zeros(r, dtype=np.bool_), np.full(r + 1, FREE), np.empty((r + 1, 2))
     extrema = np.zeros(r, dtype=np.int64)
@@ -214,7 +216,7 @@ def as_run(
         for k in range(i + places[s], i + places[s + 1]):
             extrema[s] += hidden_extrema(cubics[k % len(cubics)])
         one = places[s + 1] - places[s] == 1
-        held[s] = settled[s] or (one and (share[places[s]] == 0.0 or degrees[i + places[s]] == 1))
+        held[s] = settled[s] or (one and (stays[places[s]] or degrees[i + places[s]] == 1))
     for s in range(r + 1):
         k = i + places[s]
         T[s] = joints.leaving[0, k]
@@ -289,7 +291,7 @@ def fit_run(
     before = jumps_of(source, degrees[i:j], closed, em)
     for v in range(masters):
         whole = whole and on_grid(source[v], degrees[i:j], closed)
-    last, ends = source, np.arange(n + 1)
+    last, ends, most = source, np.arange(n + 1), KEPT + (not whole and (degrees[i:j] == 2).any())
     known, fits = np.zeros((n, SEEN, 2)), np.empty((n, SEEN, masters, 4, 2))
     done, until = np.empty((masters, n, 4, 2)), np.zeros(n, np.int64)
     for _ in range(ATTEMPTS):
@@ -300,7 +302,9 @@ def fit_run(
         found, bad = np.empty((masters, r, 4, 2)), np.zeros(r, dtype=np.bool_)
         for v in range(masters):
             own = alone(joints, v)
-            owned = as_run(cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], share, ease, settled)
+            owned = as_run(
+                cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], tries == most, ease, settled
+            )  # fmt: skip
             run = borrowed(owned)
             harmonise(run, own, i, limits.tolerance, em)
             round_run(run, own, i, limits.tolerance, em)
@@ -316,7 +320,7 @@ def fit_run(
             if bad[s] and not run.held[s]:
                 good = False
                 for k in range(places[s], places[s + 1]):
-                    tries[k] = min(tries[k] + 1, KEPT)
+                    tries[k] = min(tries[k] + 1, most)
                     share[k] = SHARES[tries[k]]
                 for k in (places[s], places[s + 1]):
                     ease[k] = EASE[tries[places[s]]]
@@ -344,7 +348,8 @@ def let_meet(
     these too. Fewer curvatures jump in the run then, and none by more than a try of it allows.
     """
     r, m = P.shape[1], cubics.shape[1]
-    stays, ones, room = np.zeros(r, np.bool_), np.ones(len(start) + 1), np.empty((2, 2025, 8))
+    stays, none, ones = np.zeros(r, np.bool_), np.zeros(len(start), np.bool_), np.ones(len(start) + 1)
+    room = np.empty((2, 2025, 8))
     for s in range(r):
         k = (i + places[s]) % m
         stays[s] = start[k] == KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
@@ -360,7 +365,7 @@ def let_meet(
                 break
             settled = away_from(q, max(wide, 1), stays, closed)
             owned = as_run(
-                cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], ones, ones, settled
+                cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], none, ones, settled
             )  # fmt: skip
             run = borrowed(owned)
             if meets(run, q, wide, P, settled, cubics, joints, i, limits, room):
