@@ -70,7 +70,7 @@ def fit_contours(
         a, b = offsets[c], offsets[c + 1]
         m, source, own, held = b - a, cubics[:, a:b].copy(), degrees[a:b], tries[a:b]
         run, types, nodes, k, inside = source, own, np.arange(m + 1), 0, np.zeros(m, dtype=np.bool_)
-        if m > 1 and (held < KEPT).any():
+        if m > 1 and ((held < KEPT).any() or (own == 2).any()):
             joints = find_joints(source, own, settings)
             cuts = cut_at(joints)
             while k < m and not cuts[k]:
