@@ -308,7 +308,7 @@ def fit_run(
             run = borrowed(owned)
             harmonise(run, own, i, limits.tolerance, em)
             round_run(run, own, i, limits.tolerance, em)
-            mark_joints(run, cubics[v], i, em, bad)
+            mark_joints(run, cubics[v], i, em, (tries >= KEPT) & (most > KEPT), bad)
             found[v] = run.P
         mark_turns(found, run, cubics, joints, i, limits.mixes, bad)
         bad |= misses(found, run, cubics, i, limits, 0.98)
@@ -414,7 +414,7 @@ def meets(
     if jumps_of(new, kinds, run.closed, em) >= jumps_of(P, kinds, run.closed, em):
         return False
     if wide > 0:
-        mark_joints(run, cubics[0], i, em, bad)
+        mark_joints(run, cubics[0], i, em, np.zeros(run.places[r], np.bool_), bad)
     for s in range(r):
         bad[s] = bad[s] or (crosses_handles(run.P[s]) and not crosses_handles(P[0, s]))
     mark_turns(new, run, cubics, joints, i, limits.mixes, bad)

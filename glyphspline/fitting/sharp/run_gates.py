@@ -19,6 +19,9 @@ CORNER = np.radians(12.5)
 KINK = np.radians(0.48)
 """Turn of a joint that a result may have where the source's is smaller."""
 
+MORE, SINGLE = 0.02, 0.5
+"""By how much more curvatures may jump where they do in the source: of cubics, and of single segments off the grid."""
+
 
 class Limits(NamedTuple):
     """How runs are fitted, in steps of the grid: the tolerance, the em, and the rounds of a cubic's fit.
@@ -127,9 +130,13 @@ def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits, 
 
 
 @compiled
-def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, bad: BoolArray) -> None:
+def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, single: BoolArray, bad: BoolArray) -> None:
     """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may
-    not, and those with new extrema inside."""
+    not, and those with new extrema inside.
+
+    Args:
+        single: (n,) segments of the source that are put on the grid by themselves.
+    """
     r, m, P = len(run.P), len(cubics), run.P
     for s in range(r):
         alone = run.places[s + 1] - run.places[s] == 1
@@ -138,7 +145,8 @@ def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, bad: BoolArray)
         bad[s] = bad[s] or hidden_extrema(P[s]) > run.extrema[s]
     for s in range(0 if run.closed else 1, r):
         k, a = (i + run.places[s]) % m, s - 1 if s > 0 else r - 1
-        wrong = end_jump(P[a], P[s], em) > max(end_jump(cubics[k - 1], cubics[k], em) + 0.02, 0.1)
+        more = SINGLE if single[run.places[a]] or single[run.places[s]] else MORE
+        wrong = end_jump(P[a], P[s], em) > max(end_jump(cubics[k - 1], cubics[k], em) + more, 0.1)
         bad[a], bad[s] = bad[a] or wrong, bad[s] or wrong
 
 
