@@ -124,10 +124,8 @@ def is_roundings(cubics: FloatArray, degrees: IntArray, j: int) -> bool:
         _, _, ax, ay = directions(own, j - 1, NO_HANDLE)
         bx, by, _, _ = directions(own, j, NO_HANDLE)
         one, two = 3 / degrees[j - 1] * length(ax, ay), 3 / degrees[j] * length(bx, by)
-        if not 0.0 < min(one, two):
-            return False
         turn = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-        if turn >= min(SHARP, DEVIATIONS * rounding_turn(one, two)):
+        if min(one, two) == 0.0 or turn >= min(SHARP, DEVIATIONS * rounding_turn(one, two)):
             return False
     return True
 

@@ -21,7 +21,7 @@ BLUNT = np.radians(20.0)
 """Turn from which a corner's sides may turn; less would soon be a kink."""
 
 MOVED = 2.5
-"""How far the end of a handle may move to be level, in units: rounding both its ends moves it by 2 at most."""
+"""How many tolerances the end of a handle may move to have the direction of the other one."""
 
 
 class Stored(NamedTuple):
@@ -72,7 +72,8 @@ class Given(NamedTuple):
 
 @compiled
 def read_contour(
-    cubics: FloatArray, degrees: IntArray, settings: Settings, stored: Stored, corners: FloatArray, mixes: FloatArray
+    cubics: FloatArray, degrees: IntArray, settings: Settings, tolerance: float, stored: Stored, corners: FloatArray,
+    mixes: FloatArray,
 ) -> Given:  # fmt: skip
     """A contour, its joints, and the tangents at these: at the ends of lines that are met smoothly, the lines'."""
     K, m = cubics.shape[:2]
@@ -87,8 +88,7 @@ def read_contour(
             way[1, w, j, 0], way[1, w, j, 1], _, _ = directions(cubics[w], j, NO_HANDLE)
         before, behind, most, fewest_turn = way[0, :, j], way[1, :, j], 0.0, np.inf
         straight = not stored.known and is_roundings(cubics, degrees, j) and line[j - 1] + line[j] < 2
-        if straight:
-            straighten(before, behind, line[j - 1], line[j])
+        straight = straight and straightened(before, behind, line[j - 1], line[j], MOVED * tolerance)
         for weights in mixes:
             (ax, ay), (bx, by) = mean(weights, before), mean(weights, behind)
             turn = turn_between(ax, ay, bx, by)
@@ -125,27 +125,31 @@ def read_contour(
 
 
 @compiled
-def straighten(before: FloatArray, behind: FloatArray, line_before: bool, line_behind: bool) -> None:
-    """Give handles (K, 2) beside a joint one direction in each master."""
-    for a, b in zip(before, behind):
-        one, two = length(a[0], a[1]), length(b[0], b[1])
-        if stays(a, b, line_before, line_behind):
-            b[0], b[1] = two / one * a[0], two / one * a[1]
+def straightened(
+    before: FloatArray, behind: FloatArray, line_before: bool, line_behind: bool, most: float
+) -> bool:  # fmt: skip
+    """Give handles (K, 2) beside a joint one direction in each master, if none moves its end by more than ``most``;
+    whether that is so."""
+    stays = np.empty(len(before), np.bool_)
+    for w in range(len(before)):
+        a, b = before[w], behind[w]
+        one, two, turn = length(a[0], a[1]), length(b[0], b[1]), turn_between(a[0], a[1], b[0], b[1])
+        level, there = (a == 0.0).any(), (b == 0.0).any()
+        stays[w] = one >= two  # rounding turns the longer one least
+        if line_before or line_behind:
+            stays[w] = line_before
+        elif level != there and turn * (two if level else one) <= most:
+            stays[w] = level
+        if turn * (two if stays[w] else one) > most:
+            return False
+    for w in range(len(before)):
+        a, b = before[w], behind[w]
+        ratio = length(b[0], b[1]) / length(a[0], a[1])
+        if stays[w]:
+            b[0], b[1] = ratio * a[0], ratio * a[1]
         else:
-            a[0], a[1] = one / two * b[0], one / two * b[1]
-
-
-@compiled
-def stays(a: FloatArray, b: FloatArray, line_before: bool, line_behind: bool) -> bool:
-    """Whether the first of two handles keeps its direction: that of a line, else of a level handle if the other end
-    moves by little then, else of the longer one, which rounding turns least."""
-    one, two = length(a[0], a[1]), length(b[0], b[1])
-    level, there = (a == 0.0).any(), (b == 0.0).any()
-    if line_before or line_behind:
-        return line_before
-    if level != there and turn_between(a[0], a[1], b[0], b[1]) * (two if level else one) < MOVED:
-        return level
-    return one >= two
+            a[0], a[1] = b[0] / ratio, b[1] / ratio
+    return True
 
 
 @compiled

@@ -382,7 +382,7 @@ def fit_contour(
         corners, mixes: see :class:`Given`.
     """
     K, m = cubics.shape[:2]
-    k, given = 0, read_contour(cubics, degrees, settings, stored, corners, mixes)
+    k, given = 0, read_contour(cubics, degrees, settings, tolerance, stored, corners, mixes)
     while k < m and not given.cuts[k]:
         k += 1
     if k == m:
@@ -401,7 +401,7 @@ def fit_contour(
         control = np.concatenate((stored.control[:, k:], stored.control[:, :k]), axis=1)
         implied, stays = np.roll(stored.implied, -k), np.roll(stored.stays, -k)
         stored = Stored(stored.known, node, control, implied, stored.drift, stays)
-        given = read_contour(cubics, degrees, settings, stored, corners, mixes)
+        given = read_contour(cubics, degrees, settings, tolerance, stored, corners, mixes)
     room = 2 * (MOST * 3 + MORE[-1]) * m
     points, on, count, i, reached = np.empty((K, room, 2)), np.empty(room, dtype=np.bool_), 0, 0, 0.0
     joints, way = given.joints, given.way
