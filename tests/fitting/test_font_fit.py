@@ -171,14 +171,27 @@ def test_decimals_do_not_keep_a_whole_contour_as_it_is() -> None:
     assert len(found.curve) < 0.8 * len(source)
 
 
+TURNED = gs.Contour(
+    np.array(
+        [[-600, 20], [-400, 8], [-200, 0], [0, 0], [6, -1], [12, -1], [19, -2], [141, -25], [300, -164], [300, -330],
+         [-600, -330]], dtype=np.float64,
+    ), np.array([3, 3, 3, 1, 1]),
+)  # fmt: skip
+"""It turns by 9.5 degrees beside a handle of 6 units."""
+
+
 def test_a_turn_that_a_check_excuses_beside_a_short_handle_is_told_apart_from_a_kink() -> None:
-    points = [[-600, 20], [-400, 8], [-200, 0], [0, 0], [6, -1], [12, -1], [19, -2]]
-    points += [[141, -25], [300, -164], [300, -330], [-600, -330]]
-    source = gs.Contour(np.array(points, dtype=np.float64), np.array([3, 3, 3, 1, 1]))
+    source = TURNED
     whole = gs.Contour(np.delete(source.points, [4, 5, 6], axis=0), np.array([3, 3, 1, 1]))
     kinds = [set(findings(gs.Outline("d", contours=(each,)).arrays, 1000.0)[:, WHAT]) for each in (source, whole)]
     assert TURNING in kinds[0] & kinds[1]
     assert KINK in kinds[1] - kinds[0]
+
+
+def test_a_turn_that_a_check_excuses_is_none_in_quadratics_with_longer_legs() -> None:
+    ((points, on),), far = quadratic_points(gs.Outline("d", contours=(TURNED,)).arrays, OPTIONS, 1.0, 1000.0)
+    assert far <= 1.0
+    assert not {KINK, TURNING} & set(findings(of_points(points, on), 1000.0)[:, WHAT])
 
 
 def quadratics(outline: gs.Outline) -> Sequence[tuple[ContourArrays, ContourArrays, int, int]]:
@@ -260,6 +273,19 @@ def test_quadratics_that_stay_are_cubics_of_the_same_shape() -> None:
             assert set(contour.curve.degrees.tolist()) <= {1, 3}
             a, b = (gs.sample(each, step=0.5) for each in (contour.source, contour.curve))
             assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
+@pytest.mark.parametrize("file", ["kouzan-gyosho.ttf", "kouzan-kaisho.ttf"])
+def test_cubics_in_the_place_of_quadratics_are_on_the_grid_and_turn_no_more(file: str) -> None:
+    """As cubics quadratics have decimals, beside which a check excuses no turn."""
+    whole = []
+    for result in gs.convert_many(outlines(FONTS / file), OPTIONS):
+        made = tuple(each.curve for each in result.contours)
+        old, new = (gs.Outline("d", contours=each).arrays for each in (result.outline.contours, made))
+        kinks_there = [np.count_nonzero(findings(each, 1000.0)[:, WHAT] == KINK) for each in (old, new)]
+        assert kinks_there[1] <= kinks_there[0], result.outline.name
+        whole.extend((np.abs(new.points - np.rint(new.points)) < 1e-6).all(axis=1))
+    assert np.mean(whole) > 0.95
 
 
 def test_quadratics_in_the_place_of_cubics_are_near_and_turn_no_more() -> None:

@@ -303,7 +303,7 @@ def fit_run(
         for v in range(masters):
             own = alone(joints, v)
             owned = as_run(
-                cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], tries == most, ease, settled
+                cubics[v], degrees, own, upright[v], i, closed, r, places, P[v], tries >= most, ease, settled
             )  # fmt: skip
             run = borrowed(owned)
             harmonise(run, own, i, limits.tolerance, em)
@@ -352,7 +352,7 @@ def let_meet(
     room = np.empty((2, 2025, 8))
     for s in range(r):
         k = (i + places[s]) % m
-        stays[s] = start[k] == KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
+        stays[s] = start[k] >= KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
     met, seen = 0, np.full(r, -1)  # nodes that met since, and how many had when a node was last tried
     for node in range(2 * r):  # once more: one that does not meet may do so when others have
         q = node % r

@@ -29,8 +29,8 @@ from .run_gates import CORNER, Limits, mixed
 from .run_gates import KINK as KINKED
 from .settings import EFFORTS, LONG_LINE, Settings
 
-GATES = (2, 4, KEPT, KEPT + 1, KEPT + 1)
-"""As how many tries the finding of a check counts, in each round; beyond ``KEPT`` the contour stays as it is."""
+GATES = (2, 4, KEPT, KEPT + 1, KEPT + 2, KEPT + 2)
+"""As how many tries the finding of a check counts, in each round; in the last ones the whole contour is kept."""
 
 TURNING = len(KINDS)
 """Beside the kinds of a check: a joint of curves that turns."""
@@ -191,8 +191,8 @@ def fit_for_fonts(
                 wrong[source.offsets[c] + _stretch(each.anchors[s, 1], each.anchors[s + 1, 1], source, c)] = True
         which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1).tolist()
         before = tries.copy()
-        tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT)
-        for c in which if level > KEPT else ():
+        tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT + 1)
+        for c in which if level > KEPT + 1 else ():
             tries[source.offsets[c] : source.offsets[c + 1]] = KEPT
         if (tries == before).all():
             break
