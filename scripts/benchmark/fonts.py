@@ -76,10 +76,11 @@ def font_rows(name: str, path: Path, text: str) -> list[Row]:
         times.append((process_time() - start) / len(some))
     spent = np.median(times[1:])
     found, note = [], f"{len(glyphs)} glyphs"
-    for flavour in ("ttf",) if quadratic else ("otf", "ttf"):
+    for flavour in ("otf", "ttf"):
         with TemporaryDirectory() as folder:
             file = Path(folder, f"new.{flavour}")
-            write_font(font, results, file, tolerance=near)
+            fitted = gs.convert_many(glyphs, OPTIONS) if quadratic and flavour == "otf" else results
+            write_font(font, fitted, file, tolerance=near)
             found += written_rows(f"{name}, {flavour}", path, file, [g.name for g in glyphs], font)
     if not quadratic:
         few = [to_em(outline) for outline in glyphs[:: max(1, len(glyphs) // FORGED)]]
@@ -107,7 +108,7 @@ def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: A
         names = [each.getGlyphOrder()[number] for each in (before, after)]
         drawn = [segments(each, one) for each, one in zip(sets, names, strict=True)]
         old, own = (joints(contours, em) for contours in drawn)
-        if "glyf" in before:
+        if "glyf" in before and "glyf" in after:
             tables = [each["glyf"] for each in (before, after)]
             counts += [len(table[each].getCoordinates(table)[0]) for table, each in zip(tables, names, strict=True)]
         else:
