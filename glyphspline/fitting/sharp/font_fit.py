@@ -193,7 +193,8 @@ def fit_for_fonts(
         before = tries.copy()
         tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT + 1)
         for c in which if level > KEPT + 1 else ():
-            tries[source.offsets[c] : source.offsets[c + 1]] = KEPT
+            a, b = source.offsets[c : c + 2]
+            tries[a:b] = np.maximum(tries[a:b], KEPT)
         if (tries == before).all():
             break
         own = np.concatenate([np.arange(source.offsets[c], source.offsets[c + 1]) for c in which])
@@ -216,7 +217,7 @@ def _fitted(
     """Contours fitted and certified.
 
     Args:
-        tries: (m,) of each segment that were in vain; ``KEPT`` keeps it. fresh, last: see :func:`fit_contours`.
+        tries: (m,) of each segment that were in vain; ``KEPT`` and more keep it. fresh, last: see :func:`fit_contours`.
     """
     scale, source, V = 10.0**options.precision, sources[0], len(corners)
     near = scale * share * tolerance
