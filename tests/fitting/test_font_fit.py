@@ -278,13 +278,13 @@ def test_quadratics_that_stay_are_cubics_of_the_same_shape() -> None:
 @pytest.mark.parametrize("file", ["kouzan-gyosho.ttf", "kouzan-kaisho.ttf"])
 def test_cubics_in_the_place_of_quadratics_are_on_the_grid_and_turn_no_more(file: str) -> None:
     """As cubics quadratics have decimals, beside which a check excuses no turn."""
-    whole = []
+    whole: list[bool] = []
     for result in gs.convert_many(outlines(FONTS / file), OPTIONS):
         made = tuple(each.curve for each in result.contours)
         old, new = (gs.Outline("d", contours=each).arrays for each in (result.outline.contours, made))
         kinks_there = [np.count_nonzero(findings(each, 1000.0)[:, WHAT] == KINK) for each in (old, new)]
         assert kinks_there[1] <= kinks_there[0], result.outline.name
-        whole.extend((np.abs(new.points - np.rint(new.points)) < 1e-6).all(axis=1))
+        whole.extend(np.all(np.abs(new.points - np.rint(new.points)) < 1e-6, axis=1).tolist())
     assert np.mean(whole) > 0.95
 
 
