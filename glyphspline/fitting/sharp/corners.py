@@ -88,7 +88,9 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
                 hard[j] = hard[j] or shows(samples[v], first[j], near, settings.angle)
     for j in range(m):
         hard[j] = hard[j] or line[j] or line[j - 1]
-        smooth[j] = bends[j] < SMOOTH_KINK or (not settings.c2 and is_roundings(cubics, degrees, j))
+        smooth[j] = bends[j] < SMOOTH_KINK
+        if line[j] != line[j - 1] and not smooth[j] and not settings.c2:
+            smooth[j] = is_roundings(cubics, degrees, j)
         kink = near / (KINK * np.sin(max(min(bends[j], np.pi / 2), 1e-9)))
         for i in (first[j], first[j] - 1):
             spacing[i] = min(spacing[i], kink)
