@@ -388,7 +388,7 @@ def test_a_handle_may_move_by_as_much_as_the_tolerance() -> None:
     moved = source[None, :1].copy()
     moved[0, 0, 1, 1] += 1.0
     kinds, places, none = np.full(2, FIXED), np.arange(2), np.zeros(1, dtype=np.int64)
-    run = Run(moved[0], none.astype(np.bool_), kinds, np.zeros((2, 2)), places, none, np.ones(2), False)
+    run = Run(moved[0], none.astype(np.bool_), kinds, np.zeros((2, 2)), places, none, np.ones(2), np.zeros(2), False)
     assert not misses(moved, run, source[None], 0, Limits(1.0, 1000.0, 4, ONE, ONE), 0.999).any()
     moved[0, 0, 1, 1] += 3.0
     assert misses(moved, run, source[None], 0, Limits(1.0, 1000.0, 4, ONE, ONE), 0.999).all()

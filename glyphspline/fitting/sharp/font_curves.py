@@ -60,10 +60,20 @@ SEEN = 6
 REACH = 1
 """How many cubics on either side of those that are tried again move with them."""
 
-WIDEST, OTHERS = 2, 0.03
-"""How many cubics on either side of a node are moved so that curvatures meet there: of 1,074 joints of EB Garamond, 3
-more meet with 3, in a quarter more time, and 20 fewer with 1, in a tenth less time. And the weight of other nodes at
-which curvatures jump: with 0, more joints jump by more than the source's, and those of round letters stay."""
+WAYS = ((0, False), (1, False), (2, False), (1, True), (2, True))
+"""How curvatures are let meet at a node, one way after the other: how many cubics on either side of it are moved
+together (none: nearby places alone), and whether other nodes are held to the jumps they have."""
+
+OTHERS = 0.03
+"""Weight of other nodes at which curvatures jump, where they are not held to that: with 0, more joints jump by more
+than the source's, and those of round letters stay."""
+
+SLACK = 0.06
+"""Jump of curvature that may stay at the node, where others are held to theirs: to this much less than they have, which
+leaves room for rounding."""
+
+HOPELESS = 1.7, 0.5
+"""Distance, in tolerances, and jump of curvature beyond which cubics that are not rounded yet are given up."""
 
 BEYOND = 0.3e-3
 """Of the em: how far a cubic may pass the ends of its span before it is rounded, where the source's segments do not."""
@@ -234,7 +244,9 @@ def as_run(
             T[s, 0], T[s, 1] = x / size, y / size
         elif upright[k]:
             kind[s] = AXIS
-    return Run(P[:r].copy(), held, kind, T, places[: r + 1].copy(), extrema, ease[places[: r + 1]], closed)
+    return Run(
+        P[:r].copy(), held, kind, T, places[: r + 1].copy(), extrema, ease[places[: r + 1]], np.zeros(r + 1), closed
+    )  # fmt: skip
 
 
 @compiled
@@ -352,15 +364,16 @@ def let_meet(
     room = np.empty((2, 2025, 8))
     for s in range(r):
         k = (i + places[s]) % m
-        stays[s] = start[k] >= KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
-    met, seen = 0, np.full(r, -1)  # nodes that met since, and how many had when a node was last tried
+        # What a check found something in as often as KEPT may meet still, but where it is put on the grid for that.
+        stays[s] = start[k] + (degrees[k] == 2) > KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
+    waiting = np.ones(r, np.bool_)
     for node in range(2 * r):  # once more: one that does not meet may do so when others have
         q = node % r
-        if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q] or seen[q] == met:
+        if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q] or not waiting[q]:
             continue
         if joint_turn(P[0, q - 1 : q] if q > 0 else P[0, r - 1 :], P[0, q : q + 1]) > SMOOTH_KINK:
             continue
-        for wide in range(WIDEST + 1):
+        for wide, held in WAYS:
             if end_jump(P[0, q - 1], P[0, q], limits.em) <= 0.1:
                 break
             settled = away_from(q, max(wide, 1), stays, closed)
@@ -368,11 +381,12 @@ def let_meet(
                 cubics[0], degrees, joints, upright[0], i, closed, r, places, P[0], none, ones, settled
             )  # fmt: skip
             run = borrowed(owned)
-            if meets(run, q, wide, P, settled, cubics, joints, i, limits, room):
+            if meets(run, q, wide, held, P, settled, cubics, joints, i, limits, room):
                 P[0] = run.P
-                met += 1
+                for away in range(-2 * WAYS[-1][0], 2 * WAYS[-1][0] + 1):
+                    waiting[(q + away) % r] = True
             keep_alive(owned)
-        seen[q] = met
+        waiting[q] = False
 
 
 @compiled
@@ -391,25 +405,21 @@ def away_from(q: int, wide: int, stays: BoolArray, closed: bool) -> BoolArray:
 
 @compiled
 def meets(
-    run: Run, q: int, wide: int, P: FloatArray, settled: BoolArray, cubics: FloatArray, joints: Joints, i: int,
-    limits: Limits, room: FloatArray,
+    run: Run, q: int, wide: int, held: bool, P: FloatArray, settled: BoolArray, cubics: FloatArray, joints: Joints,
+    i: int, limits: Limits, room: FloatArray,
 ) -> bool:  # fmt: skip
     """Move the cubics of a run so that curvatures meet at node q; whether it is better then than P (1, r, 4, 2).
 
     Args:
-        wide: how many cubics on either side are moved together; 0 takes nearby places alone. settled: (r,) those that
-            do not move. room: of :func:`.lattice.meet`.
+        wide, held: see :data:`WAYS`. settled: (r,) those that do not move. room: of :func:`.lattice.meet`.
     """
     r, em, kinds = len(run.P), limits.em, np.full(len(run.P), 3)
-    if wide > 0:
-        for s in range(0 if run.closed else 1, r):
-            if s != q and end_jump(P[0, s - 1], P[0, s], em) > 0.1:
-                run.ease[s] = OTHERS
-        run.ease[r] = run.ease[0]
-        harmonise(run, joints, i, limits.tolerance, em)
-        round_run(run, joints, i, limits.tolerance, em)
-    if end_jump(run.P[q - 1], run.P[q], em) > 0.1:
-        meet(run, q, joints, i, limits.tolerance, em, room)
+    if wide > 0 and not moved_together(run, q, held, P, settled, cubics, joints, i, limits):
+        return False
+    for s in range(0 if run.closed else 1, r):
+        jumped = s != q and end_jump(P[0, s - 1], P[0, s], em) > 0.1
+        if not jumped and not settled[s - 1] and not settled[s] and end_jump(run.P[s - 1], run.P[s], em) > 0.1:
+            meet(run, s, joints, i, limits.tolerance, em, room)
     new, bad = run.P.copy().reshape((1, r, 4, 2)), np.zeros(r, np.bool_)
     if jumps_of(new, kinds, run.closed, em) >= jumps_of(P, kinds, run.closed, em):
         return False
@@ -420,6 +430,28 @@ def meets(
     mark_turns(new, run, cubics, joints, i, limits.mixes, bad)
     bad |= misses(new, run, cubics, i, limits, 0.999)
     return not (bad & ~settled).any()
+
+
+@compiled
+def moved_together(
+    run: Run, q: int, held: bool, P: FloatArray, settled: BoolArray, cubics: FloatArray, joints: Joints, i: int,
+    limits: Limits,
+) -> bool:  # fmt: skip
+    """Move the cubics beside node q together and round them; False where that is given up. See :func:`meets`."""
+    r, em = len(run.P), limits.em
+    for s in range(0 if run.closed else 1, r):
+        jump = end_jump(P[0, s - 1], P[0, s], em)
+        if held:
+            run.slack[s] = SLACK if s == q else max(jump - SLACK, SLACK / 2)
+        elif s != q and jump > 0.1:
+            run.ease[s] = OTHERS
+    run.ease[r], run.slack[r] = run.ease[0], run.slack[0]
+    harmonise(run, joints, i, limits.tolerance, em)
+    far = misses(run.P.copy().reshape((1, r, 4, 2)), run, cubics, i, limits, HOPELESS[0])
+    if (far & ~settled).any() or end_jump(run.P[q - 1], run.P[q], em) > HOPELESS[1]:
+        return False
+    round_run(run, joints, i, limits.tolerance, em)
+    return True
 
 
 @compiled

@@ -49,7 +49,8 @@ class Run(NamedTuple):
         kind: (r + 1,) what the nodes may do. T: (r + 1, 2) unit tangents of nodes that are not corners.
         places: (r + 1,) joints of the outline, counted from the first, at which the nodes were.
         extrema: (r,) most extrema inside each cubic: as many as the source's segments have there.
-        ease: (r + 1,) weights of the nodes' equations of curvature. closed: whether the last node is the first again.
+        ease: (r + 1,) weights of the nodes' equations of curvature. slack: (r + 1,) jumps of curvature that may stay.
+        closed: whether the last node is the first again.
     """
 
     P: FloatArray
@@ -59,6 +60,7 @@ class Run(NamedTuple):
     places: IntArray
     extrema: IntArray
     ease: FloatArray
+    slack: FloatArray
     closed: bool
 
 
@@ -241,7 +243,8 @@ def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, number:
                 dbx, dby = spread[5, 0, u] - spread[4, 0, u], spread[5, 1, u] - spread[4, 1, u]
             d = f * (dax * by - day * bx + ax * dby - ay * dbx) - 3 * value * (ax * dax + ay * day) / (size * size)
             row[u] += d / most if side else -d / most
-    gap = -(other - one) / most
+    gap = (one - other) / most
+    gap -= min(max(gap, -run.slack[s + 1]), run.slack[s + 1])
     w = share / (JUMP * JUMP)
     for u in range(15):
         if row[u] == 0.0:

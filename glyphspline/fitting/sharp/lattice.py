@@ -121,13 +121,13 @@ def end_cost(run: Run, k: int) -> float:
 
 
 @compiled
-def joint_cost(P: FloatArray, s: int, q: int, ease: float, em: float, least: float) -> float:
+def joint_cost(P: FloatArray, s: int, q: int, ease: float, slack: float, em: float, least: float) -> float:
     """What the turn and the jump of curvature cost where cubic q follows on cubic s, jumps by their weight; at least
     ``least`` where it would be that much."""
     cost = turn_cost(P[s, 3, 0] - P[s, 2, 0], P[s, 3, 1] - P[s, 2, 1], P[q, 1, 0] - P[q, 0, 0], P[q, 1, 1] - P[q, 0, 1])
     if cost >= least:
         return cost
-    jump = min(end_jump(P[s], P[q], em), 1.0)
+    jump = max(min(end_jump(P[s], P[q], em), 1.0) - slack, 0.0)
     return cost + ease * (0.25 * (jump / JUMP) ** 2 + (JUMP_PRICE if jump > JUMP else 0.0))
 
 
@@ -160,7 +160,7 @@ def cost_at(
             return far
     left, right = k - 1 if k > 0 else r - 1, k if k < r else 0
     inner = run.closed or 0 < k < r
-    total = joint_cost(P, left, right, ease[right], em, least) if inner else end_cost(run, k)
+    total = joint_cost(P, left, right, ease[right], run.slack[right], em, least) if inner else end_cost(run, k)
     for side, s in enumerate((before, after)):
         if s >= 0:
             total += parts[side, 0]
@@ -173,7 +173,7 @@ def cost_at(
         if s >= 0 and total < least and (run.closed or 0 < k - 1 + 2 * side < r):
             if parts[side, 2] < 0.0 or r < 3:  # where both sides meet again
                 q = s + side if s + side < r else 0
-                parts[side, 2] = joint_cost(P, q - 1, q, ease[q], em, np.inf)
+                parts[side, 2] = joint_cost(P, q - 1, q, ease[q], run.slack[q], em, np.inf)
             total += parts[side, 2]
     return total
 
