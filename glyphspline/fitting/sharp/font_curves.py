@@ -62,7 +62,8 @@ REACH = 1
 
 WAYS = ((0, False), (1, False), (2, False), (1, True), (2, True))
 """How curvatures are let meet at a node, one way after the other: how many cubics on either side of it are moved
-together (none: nearby places alone), and whether other nodes are held to the jumps they have."""
+together (none: nearby places alone), and whether other nodes are held to the jumps they have. Without the last two, 69
+of 1,074 jumps of EB Garamond are left instead of 60, and 129 of 1,122 of its Italic instead of 111."""
 
 OTHERS = 0.03
 """Weight of other nodes at which curvatures jump, where they are not held to that: with 0, more joints jump by more
