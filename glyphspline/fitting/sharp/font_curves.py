@@ -357,8 +357,8 @@ def let_meet(
 ) -> None:  # fmt: skip
     """Let curvatures meet at single nodes of a run on the grid, (1, r, 4, 2), where that is certified.
 
-    Nearby places on the grid are tried first, then the cubics beside the node are moved together, and those beside
-    these too. Fewer curvatures jump in the run then, and none by more than a try of it allows.
+    Each node is tried in all :data:`WAYS`, and once more if cubics near it have changed. Fewer curvatures jump in the
+    run then, and none by more than a try of it allows.
     """
     r, m = P.shape[1], cubics.shape[1]
     stays, none, ones = np.zeros(r, np.bool_), np.zeros(len(start), np.bool_), np.ones(len(start) + 1)
@@ -368,7 +368,7 @@ def let_meet(
         # What a check found something in as often as KEPT may meet still, but where it is put on the grid for that.
         stays[s] = start[k] + (degrees[k] == 2) > KEPT or (places[s + 1] == places[s] + 1 and degrees[k] == 1)
     waiting = np.ones(r, np.bool_)
-    for node in range(2 * r):  # once more: one that does not meet may do so when others have
+    for node in range(2 * r):
         q = node % r
         if (q == 0 and not closed) or r == 1 or stays[q - 1] or stays[q] or not waiting[q]:
             continue
@@ -384,6 +384,7 @@ def let_meet(
             run = borrowed(owned)
             if meets(run, q, wide, held, P, settled, cubics, joints, i, limits, room):
                 P[0] = run.P
+                # Its cubics have changed as far as the widest way reaches, and as far beyond nodes depend on them.
                 for away in range(-2 * WAYS[-1][0], 2 * WAYS[-1][0] + 1):
                     waiting[(q + away) % r] = True
             keep_alive(owned)
