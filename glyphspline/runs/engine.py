@@ -21,7 +21,7 @@ from ..errors import GlyphsplineError, OutputError
 from .pool import TimeLimitError, WorkerLostError, pool_size, sign_of_life
 
 AHEAD = 4
-"""Chunks in flight for each worker, so that none waits: two in the worker, and two in the queue."""
+"""Chunks in flight for each worker, so that none waits while results are taken."""
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")

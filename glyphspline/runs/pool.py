@@ -2,9 +2,6 @@
 
 The pools of the standard library break when one process dies, and cannot kill one that hangs. Here only the current
 call of such a process fails: its future gets the error, and a new process replaces the old one.
-
-A busy process gets its next call in advance if enough are queued. Otherwise it would wait a millisecond between calls,
-the time of two or three glyphs.
 """
 
 from __future__ import annotations
@@ -17,12 +14,11 @@ import signal
 import sys
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import Executor, Future
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
 from importlib import import_module
-from multiprocessing import connection, forkserver, resource_tracker
+from multiprocessing import forkserver, resource_tracker
 from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
@@ -37,9 +33,6 @@ Seconds in which a process has to start: compiling everything takes two minutes 
 
 CODE = os.path.realpath(__file__)
 """This file, which workers have to import too: those of another copy of the package would do other things."""
-
-Call = tuple[Future[Any], bytes]
-"""The future of a call, and its function and arguments, pickled."""
 
 
 class WorkerLostError(GlyphsplineError):
@@ -153,10 +146,10 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     with suppress(EOFError, OSError):
         calls.send(CODE)
         while True:
-            function, arguments = calls.recv()
+            function, arguments, keywords = calls.recv()
             sign_of_life()
             try:
-                answer = (True, function(*arguments))
+                answer = (True, function(*arguments, **keywords))
             except Exception as error:
                 answer = (False, error)
             _end_after(0.0)
@@ -164,13 +157,12 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
 
 
 class _Worker:
-    """One process, its end of the pipe, and its calls; the first of them is running."""
+    """One process, and this end of its pipe."""
 
     def __init__(self, context: Any, seconds: float, preload: Sequence[str]) -> None:
-        self.sign = context.RawValue("d", 0.0)
+        self.sign = context.RawValue("d", time.monotonic())
         self.calls, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, self.sign, seconds, preload), daemon=True)
-        self.ready, self.started = False, time.monotonic()
         limit = threading.Timer(STARTING, kill_server)  # a start waits for the process from which workers are forked
         limit.daemon = True
         limit.start()
@@ -179,15 +171,21 @@ class _Worker:
         finally:
             limit.cancel()
             theirs.close()
-        self.has: deque[Call] = deque()
 
-    def give(self, call: Call) -> None:
-        """Send a call."""
-        if not self.has:
-            self.sign.value = time.monotonic()
-        self.has.append(call)
-        with suppress(OSError):  # a dead process is noticed when its pipe is read
-            self.calls.send_bytes(call[1])
+    def receive(self, seconds: float) -> Any:
+        """What the process sends next. It is ended if it gives no sign of life for that long.
+
+        Raises:
+            EOFError, OSError: it has died. TimeoutError: it gave no sign of life.
+        """
+        try:
+            while not self.calls.poll(POLL):
+                if time.monotonic() - self.sign.value > seconds:
+                    raise TimeoutError
+            return self.calls.recv()
+        except (EOFError, OSError):
+            self.end()
+            raise
 
     def end(self) -> None:
         """Kill the process."""
@@ -196,8 +194,8 @@ class _Worker:
         self.calls.close()
 
 
-class WorkerPool(Executor):
-    """A fixed number of processes; :meth:`submit` gives futures whose errors may be the three above.
+class WorkerPool(ThreadPoolExecutor):
+    """Threads with a process each, which makes their calls; :meth:`submit` gives futures with the three errors above.
 
     Args:
         size: how many processes.
@@ -211,21 +209,18 @@ class WorkerPool(Executor):
     """
 
     def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
-        self._max_workers = size
-        self._seconds = seconds
-        self._preload = tuple(preload)
-        self._expected = expected
+        super().__init__(size)
+        self._seconds, self._preload = seconds, tuple(preload)
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
+        self._processes: dict[int, _Worker] = {}  # by thread
+        self._starting = threading.Lock()
+        self._died = 0  # processes in a row that died while they started
+        self._is_ready = self.is_closed = False
+        self._error: WorkerStartError | None = None
         if os.name != "nt":
             start_forkserver(preload)
-        self._queue: deque[Call] = deque()
-        self._wake, self._woken = self._context.Pipe()
-        self.is_closed, self._starting = False, True
-        self._error: Exception | None = None
-        self._died = 0  # processes in a row that died while they started
-        self._workers: list[_Worker] = []
-        self._thread = threading.Thread(target=self._manage, daemon=True)
-        self._thread.start()
+        for _ in range(min(size, expected)):
+            super().submit(self._process)
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Queue a call of a function that can be pickled.
@@ -235,126 +230,68 @@ class WorkerPool(Executor):
         """
         if self._error is not None:
             raise self._error
-        if kwargs or self.is_closed:
-            raise RuntimeError("the pool is closed, or was given keywords")
-        future: Future[Any] = Future()
-        self._queue.append((future, bytes(ForkingPickler.dumps((fn, args)))))
-        self._wake.send_bytes(b"")
-        return future
+        return super().submit(self._call, bytes(ForkingPickler.dumps((fn, args, kwargs))))
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Kill the processes; running and queued calls are lost."""
-        if not self.is_closed:
-            self.is_closed = True
-            self._wake.send_bytes(b"")
-        if wait:
-            if self._starting:  # what workers import may be compiled for minutes yet, which no call waits for now
-                kill_server()
-            self._thread.join()
+        self.is_closed = True
+        if wait and not self._is_ready:  # what workers import may be compiled for minutes yet, which no call waits for
+            kill_server()
+        for worker in [*self._processes.values()]:
+            worker.process.kill()
+        super().shutdown(wait)
 
-    def _manage(self) -> None:
+    def _call(self, call: bytes) -> Any:
+        """Make a call in this thread's process."""
+        worker = self._process()
+        worker.sign.value = time.monotonic()
         try:
-            while not self.is_closed:
-                self._start()
-                self._assign()
-                busy = any(worker.has or not worker.ready for worker in self._workers)
-                awaited = [self._woken, *(worker.calls for worker in self._workers)]
-                for item in connection.wait(awaited, POLL if busy else None):
-                    if item is self._woken:
-                        self._woken.recv_bytes()
-                    else:
-                        self._receive(next(worker for worker in self._workers if worker.calls is item))
-                self._end_hung()
-        except Exception as error:
-            self._error, self.is_closed = error, True
-            self._fail_all(error)
-        finally:
-            for worker in self._workers:
-                worker.end()
-            self._fail_all(WorkerLostError("the pool was closed"))
+            with suppress(OSError):  # a dead process is noticed when its pipe is read
+                worker.calls.send_bytes(call)
+            good, value = worker.receive(self._seconds)
+        except TimeoutError:
+            raise TimeLimitError(f"took longer than {self._seconds:g} s") from None
+        except (EOFError, OSError):
+            raise WorkerLostError("the pool was closed" if self.is_closed else "the worker process died") from None
+        if not good:
+            raise value
+        return value
 
-    def _assign(self) -> None:
-        """Send calls to idle processes; then, if enough are queued, send busy ones their next calls."""
-        ready = [worker for worker in self._workers if worker.ready]
-        for worker in ready:
-            if not worker.has:
-                self._give_next(worker)
-        for worker in ready:
-            # Bytes of a call that a pipe buffers: sending them does not block.
-            if len(worker.has) == 1 and len(self._queue) >= self._max_workers and len(self._queue[0][1]) <= 32_768:
-                self._give_next(worker)
-
-    def _give_next(self, worker: _Worker) -> None:
-        while self._queue:
-            call = self._queue.popleft()
-            if call[0].running() or call[0].set_running_or_notify_cancel():
-                worker.give(call)
-                break
-
-    def _start(self) -> None:
-        """Start as many processes as there are calls, up to the size."""
-        wanted = max(self._expected, len(self._queue) + sum(len(worker.has) for worker in self._workers))
-        while len(self._workers) < min(self._max_workers, wanted):
-            self._workers.append(self._new_worker())
-
-    def _new_worker(self) -> _Worker:
-        """Start a process, and the one from which it is forked again if that has died.
+    def _process(self) -> _Worker:
+        """This thread's process, ready for a call: a new one if there is none, or it has died.
 
         Raises:
-            WorkerStartError: several in a row have died.
+            WorkerStartError: several in a row have died. WorkerLostError: the pool is closed.
         """
-        self._starting = True
-        while not (self.is_closed or _is_ending) and self._died < STARTS:
-            if self._died and os.name != "nt":
-                start_forkserver(self._preload)
+        thread = threading.get_ident()
+        known = self._processes.get(thread)
+        if known and not (known.calls.closed or known.calls.poll()):
+            return known
+        while not (self.is_closed or _is_ending):
             try:
-                return _Worker(self._context, self._seconds, self._preload)
+                with self._starting:
+                    if self._died and os.name != "nt":
+                        start_forkserver(self._preload)
+                    worker = self._processes[thread] = _Worker(self._context, self._seconds, self._preload)
+                if self.is_closed:
+                    worker.end()
+                code = worker.receive(STARTING)
             except (EOFError, OSError):
+                self._is_ready = False
                 self._died += 1
+                if self._died >= STARTS:
+                    self._fail("a worker process could not start")
                 time.sleep(POLL * self._died)  # a process that was killed may not have ended yet
-        raise WorkerStartError("a worker process could not start")
+            else:
+                if code != CODE:
+                    self._fail(f"workers run other code, {code}, not {CODE}: set PYTHONPATH to its folder")
+                self._is_ready, self._died = True, 0
+                return worker
+        raise self._error or WorkerLostError("the pool was closed")
 
-    def _receive(self, worker: _Worker) -> None:
-        try:
-            answer = worker.calls.recv()
-        except (EOFError, OSError):
-            self._died += not worker.ready
-            self._replace(worker, WorkerLostError("the worker process died"))
-            return
-        if not worker.ready:
-            if answer != CODE:
-                raise WorkerStartError(f"workers run other code, {answer}, not {CODE}: set PYTHONPATH to its folder")
-            worker.ready, self._died = True, 0
-            self._starting = not all(other.ready for other in self._workers)
-            return
-        future, _ = worker.has.popleft()
-        good, value = answer
-        (future.set_result if good else future.set_exception)(value)
-
-    def _end_hung(self) -> None:
-        now = time.monotonic()
-        for worker in list(self._workers):
-            if worker.has and now - worker.sign.value > self._seconds:
-                self._replace(worker, TimeLimitError(f"took longer than {self._seconds:g} s"))
-            elif not worker.ready and now - worker.started > STARTING:
-                self._died += 1
-                self._replace(worker, TimeLimitError("did not start in time"))
-
-    def _replace(self, worker: _Worker, error: GlyphsplineError) -> None:
-        """Replace a lost process: its running call gets the error, its next call is queued again."""
-        worker.end()
-        if worker.has:
-            worker.has.popleft()[0].set_exception(error)
-        self._queue.extendleft(reversed(worker.has))
-        worker.has.clear()
-        self._workers[self._workers.index(worker)] = self._new_worker()
-
-    def _fail_all(self, error: Exception) -> None:
-        left = [future for worker in self._workers for future, _ in worker.has if not future.done()]
-        left += [future for future, _ in self._queue if future.running() or future.set_running_or_notify_cancel()]
-        self._queue.clear()
-        for future in left:
-            future.set_exception(error)
+    def _fail(self, why: str) -> None:
+        self.is_closed, self._error = True, WorkerStartError(why)
+        raise self._error
 
 
 if ASKED in os.environ:  # the process from which workers are forked imports this module, and takes no arguments

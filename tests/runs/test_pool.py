@@ -76,7 +76,7 @@ def test_a_dead_worker_costs_one_call_and_is_replaced(pool: WorkerPool) -> None:
 
 
 @pytest.mark.parametrize(("call", "limit"), [(die, WorkerLostError), (hang, TimeLimitError)])
-def test_what_a_lost_worker_had_ahead_is_done_by_another(call: Callable[[], None], limit: type[Exception]) -> None:
+def test_what_waits_for_a_lost_worker_is_done_by_another(call: Callable[[], None], limit: type[Exception]) -> None:
     with WorkerPool(1, seconds=LIMIT) as pool:
         first = pool.submit(os.getpid)
         lost, kept = pool.submit(call), [pool.submit(pow, 5, k) for k in range(6)]
@@ -86,7 +86,7 @@ def test_what_a_lost_worker_had_ahead_is_done_by_another(call: Callable[[], None
         assert first.result(timeout=LIMIT) != last.result(timeout=LIMIT)
 
 
-def test_calls_too_large_for_a_pipe_are_not_handed_out_ahead() -> None:
+def test_calls_may_be_larger_than_a_pipe_holds() -> None:
     with WorkerPool(1, seconds=LIMIT) as pool:
         futures = [pool.submit(len, b"x" * 3_000_000) for _ in range(6)]
         assert [future.result(timeout=LIMIT) for future in futures] == [3_000_000] * 6
