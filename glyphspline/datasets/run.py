@@ -25,7 +25,7 @@ from ..runs.jobs.convert import ConvertJob
 from ..runs.rows import UNFINISHED, Made, Unfinished, remove_unfinished, streamed
 from ..runs.schedule import Place, kinds_for, sources, workers
 from ..runs.shapes import Shapes
-from ..runs.spec import Limits, differences
+from ..runs.spec import LIMITS, differences
 from .card import Summary, card, fonts_file
 from .columns import schema
 from .plan import Plan, Shard, Task, plan_of, record_text
@@ -41,10 +41,9 @@ SHARD_NAME = re.compile(r"(?:train|validation|test)-\d{5,}-of-\d{5,}\.parquet")
 
 @dataclass(frozen=True)
 class RowsJob(Job[Task, Made]):
-    """Rows of glyphs; the tasks of a call are of one font. ``limits``: from which size on a glyph fails."""
+    """Rows of glyphs; the tasks of a call are of one font."""
 
     spec: DatasetSpec
-    limits: Limits
 
     budget = ConvertJob.budget
 
@@ -55,13 +54,13 @@ class RowsJob(Job[Task, Made]):
         place = tasks[0].font.place
         (source,), gids = sources(place), _selected(place, self.spec)
         found = list(source.outlines([gids[task.at] for task in tasks], errors="return"))
-        points, most = self.spec.points or 0, self.limits.vertices
+        points, most = self.spec.points or 0, LIMITS.vertices
         for k, outline in enumerate(found):
             count = 0 if isinstance(outline, GlyphsplineError) else len(outline.contours)
             if count > 100 and count * points > most:
                 words = f"{count} contours of {points} points, more than the {most} points allowed"
                 found[k] = GlyphsplineError(words)
-        return items(found, self.spec.options, self.limits)
+        return items(found, self.spec.options, LIMITS)
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Made:
         """The rows of outlines."""
@@ -146,15 +145,14 @@ def dataset(
     if not found:
         raise OptionError("no fonts found")
     kinds = ["points", *(["unfitted"] if spec.options is None else kinds_for(spec.options))]
-    limits = Limits()
     with (
         nullcontext() if remote.is_url(folder) else locked(Path(folder)),  # a store has no locks
-        workers(jobs, limits.seconds, kinds, len(found), scheduler=scheduler, executor=executor) as pool,
+        workers(jobs, LIMITS.seconds, kinds, len(found), scheduler=scheduler, executor=executor) as pool,
     ):
         scanned = run(ScanJob(spec), [path.absolute() for path in found], pool)
         plan = plan_of(spec, [facts for part in scanned for facts in part.result], sizes)
         _prepare(folder, plan, restart)
-        summary = _written(folder, plan, pool, limits, observer)
+        summary = _written(folder, plan, pool, observer)
     summary.seconds = time.perf_counter() - started
     return summary
 
@@ -193,7 +191,7 @@ def _record(out: str) -> dict[str, Any] | None:
     return record
 
 
-def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Observer | None) -> Summary:
+def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) -> Summary:
     """Write the shards that are not finished, then the table of fonts and the card."""
     paths = {shard: f"{out}/{shard.name}" for shard in plan.shards}
     held = {shard: finished(path, mark_of(shard, plan)) for shard, path in paths.items()}
@@ -210,7 +208,7 @@ def _written(out: str, plan: Plan, pool: Executor, limits: Limits, observer: Obs
     known = first.chunks if first else 0
     made = sum(map(len, islice(plan.chunks(left[0]), known))) if left else 0
     parts = run(
-        RowsJob(plan.spec, limits), (), pool, ordered=True, observer=watching, total=plan.glyphs,
+        RowsJob(plan.spec), (), pool, ordered=True, observer=watching, total=plan.glyphs,
         before=plan.glyphs - sum(shard.glyphs for shard in left) + made,
         chunks=islice(chain.from_iterable(map(plan.chunks, left)), known, None),
     )  # fmt: skip

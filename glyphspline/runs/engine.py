@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import time
 from abc import ABC, abstractmethod
-from collections import deque
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
 from dataclasses import dataclass
@@ -118,73 +117,43 @@ def run(
     if chunks is None:
         # Chunks for each worker at least, so that the workers finish at about the same time.
         chunks = slices(tasks, max(1, min(job.chunk, len(tasks) // (8 * pool_size(pool)))))
-    most = 2 * AHEAD * pool_size(pool)
-    yielded, waiting = 0, dict[int, Part[Task, Result]]()
-
-    def numbered() -> Iterator[tuple[int, Sequence[Task]]]:
-        number = 0
-        for chunk in chunks:
-            while ordered and number - yielded >= most * len(chunk):
-                yield number, ()  # none now: the results that come first are not there yet
-            yield number, chunk
-            number += len(chunk)
-
+    left, most = iter(chunks), AHEAD * pool_size(pool) * (2 if ordered else 1)
+    pending: list[tuple[Future[list[Part[Task, Result]]], Sequence[Task], int]] = []
     done, failed = before, 0
-    for number, parts in _spread(job, numbered(), pool):
-        done += sum(len(part.tasks) for part in parts)
-        failed += sum(part.failed for part in parts)
-        if ordered:
-            for part in parts:
-                waiting[number] = part
-                number += len(part.tasks)
-            while yielded in waiting:
-                part = waiting.pop(yielded)
-                yielded += len(part.tasks)
-                yield part
-        else:
+    try:
+        while True:
+            awaited = [future for future, _, _ in pending[: 1 if ordered else None]]
+            k = next((k for k, future in enumerate(awaited) if future.done()), None)
+            if k is None:
+                if len(pending) < most and (chunk := next(left, ())):
+                    pending.append((pool.submit(work, job, chunk), chunk, 1))
+                elif pending:
+                    wait(awaited, return_when=FIRST_COMPLETED)
+                else:
+                    return
+                continue
+            future, chunk, trial = pending.pop(k)
+            try:
+                parts = future.result()
+            except (WorkerLostError, TimeLimitError) as error:
+                # Attempts at a task whose worker died: the task need not be the cause.
+                if len(chunk) > 1 or (isinstance(error, WorkerLostError) and trial < 3):
+                    pending[k:k] = [(pool.submit(work, job, [task]), [task], trial + 1) for task in chunk]
+                    continue
+                parts = [_failed(job, chunk[0], error)]
             yield from parts
-        if observer:
-            observer(done, total, failed)
+            done += len(chunk)
+            failed += sum(part.failed for part in parts)
+            if observer:
+                observer(done, total, failed)
+    finally:
+        for future, _, _ in pending:
+            future.cancel()
 
 
 def slices(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
     """Tasks in chunks of a size."""
     return [tasks[start : start + size] for start in range(0, len(tasks), size)]
-
-
-def _spread(
-    job: Job[Task, Result], chunks: Iterator[tuple[int, Sequence[Task]]], pool: Executor
-) -> Iterator[tuple[int, list[Part[Task, Result]]]]:
-    """Do numbered chunks in a pool; yield the number of each chunk's first task, and its results, as it completes.
-
-    ``chunks`` may yield an empty one while others are in flight: it is asked again when one of them completes.
-    """
-    again: deque[tuple[int, Sequence[Task], int]] = deque()
-    pending: dict[Future[list[Part[Task, Result]]], tuple[int, Sequence[Task], int]] = {}
-    try:
-        while True:
-            while len(pending) < AHEAD * pool_size(pool):
-                number, chunk, trial = again.popleft() if again else (*next(chunks, (0, ())), 1)
-                if not chunk:
-                    break
-                pending[pool.submit(work, job, chunk)] = number, chunk, trial
-            if not pending:
-                return
-            wait(pending, return_when=FIRST_COMPLETED)
-            for future in [future for future in pending if future.done()]:
-                number, chunk, trial = pending.pop(future)
-                try:
-                    parts = future.result()
-                except (WorkerLostError, TimeLimitError) as error:
-                    # Attempts at a task whose worker died: the task need not be the cause.
-                    if len(chunk) > 1 or (isinstance(error, WorkerLostError) and trial < 3):
-                        again.extend((k, [task], trial + 1) for k, task in enumerate(chunk, number))
-                        continue
-                    parts = [_failed(job, chunk[0], error)]
-                yield number, parts
-    finally:
-        for future in pending:
-            future.cancel()
 
 
 def work(job: Job[Task, Result], tasks: Sequence[Task]) -> list[Part[Task, Result]]:

@@ -39,7 +39,6 @@ from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
 from glyphspline.runs.rows import Made
 from glyphspline.runs.shapes import Shapes
-from glyphspline.runs.spec import Limits
 from tests.places import FONTS
 
 PLAIN = DatasetSpec(options=None, points=8)
@@ -253,7 +252,7 @@ def test_rows_come_in_order_from_workers_that_do_not(monkeypatch: pytest.MonkeyP
     waited = vars(engine)["wait"]
     monkeypatch.setattr(engine, "wait", ending)
     chunks = (chunk for shard in whole.shards for chunk in whole.chunks(shard))
-    found = list(run(RowsJob(PLAIN, Limits()), (), pool, ordered=True, chunks=chunks))
+    found = list(run(RowsJob(PLAIN), (), pool, ordered=True, chunks=chunks))
     numbers = [task.at for part in found for task in part.tasks]
     assert numbers == list(range(SMALL.shard * 40))
     assert [part.result.failed for part in found if part.result.failed] == [[("#437", "the worker process died")]]
@@ -274,7 +273,7 @@ def test_glyphs_that_cost_a_worker_are_named() -> None:
     facts = FontFacts(FONTS / "kouzan-kaisho.ttf", "kouzan-kaisho.ttf", sha256="a", split="train", taken=5)
     spec = replace(PLAIN, characters="あいうのを")
     whole = Plan(spec, (facts,), SMALL)
-    found = run(RowsJob(spec, Limits()), (), Lossy(), ordered=True, chunks=whole.chunks(whole.shards[0]))
+    found = run(RowsJob(spec), (), Lossy(), ordered=True, chunks=whole.chunks(whole.shards[0]))
     assert [name for part in found for name, _ in part.result.failed] == [f"uni{ord(c):04X}" for c in "あいうのを"]
 
 
