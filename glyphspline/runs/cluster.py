@@ -14,14 +14,15 @@ import shutil
 import tempfile
 import threading
 import warnings
-from collections import OrderedDict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import weakref
+from collections import OrderedDict, deque
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import CancelledError, Executor, Future
-from contextlib import contextmanager
-from dataclasses import dataclass, field
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
+from weakref import WeakValueDictionary
 
 from ..errors import GlyphsplineError, words_of
 from ..extras import need
@@ -147,23 +148,35 @@ def make_call(call: bytes, paths: Mapping[int | str, Path]) -> bytes:
     return pickled(function(*arguments), {path: name for name, path in paths.items()}.get)
 
 
-@dataclass
-class Workshop:
-    """The processes and fonts of a worker of the cluster, kept between calls.
+class FontFile:
+    """A font on the disk of a worker of the cluster, there as long as something refers to it."""
 
-    Attributes:
-        pool: what makes the calls. folder: of font files. calls: number of them in flight.
-        fonts: names of files, last used last, and how many calls in flight use each.
-    """
-
-    pool: WorkerPool
-    folder: Path
-    calls: int = 0
-    fonts: OrderedDict[str, int] = field(default_factory=OrderedDict)
+    def __init__(self, name: str, content: bytes, scratch: str) -> None:
+        folder = Path(tempfile.mkdtemp(prefix="glyphspline-fonts-", dir=scratch))
+        self.path = folder / name
+        write_whole(str(self.path), content)
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
 
 
-_workshops: dict[Processes, Workshop] = {}
 _lock = threading.Lock()
+_files: WeakValueDictionary[str, FontFile] = WeakValueDictionary()
+_used: deque[FontFile] = deque(maxlen=KEPT)  # last, beside those of calls in flight
+
+
+def font_file(name: str, content: bytes, scratch: str) -> FontFile:
+    """The file of a font on the disk of this worker of the cluster; it is called what follows its hash."""
+    file = _files.get(name) or FontFile(name.rpartition("/")[2], content, scratch)
+    _files[name] = file
+    _used.append(file)
+    return file
+
+
+@lru_cache(maxsize=1)
+def processes_of(size: int, seconds: float, preload: tuple[str, ...]) -> WorkerPool:
+    """The processes of this worker of the cluster. Those of another kind end with their calls, as their pipes close."""
+    # dask starts its workers as daemonic, which may have no children: these would outlive it. Ours end with it.
+    multiprocessing.current_process().daemon = False
+    return WorkerPool(size, seconds, preload)
 
 
 def call_there(
@@ -172,63 +185,19 @@ def call_there(
     """Make a call in a process of this worker of the cluster; returns its result, and what it has written by path."""
     worker = need("cluster").get_worker()
     scratch = worker.local_directory  # dask empties it, after a kill too
-    with (
-        workshop(processes, worker.state.nthreads, scratch) as shop,
-        kept(shop, dict(zip(names, fonts, strict=True))) as paths,
-        tempfile.TemporaryDirectory(prefix="glyphspline-", dir=scratch) as folder,
-    ):
+    with _lock:
+        if processes_of(worker.state.nthreads, *processes).is_closed:  # they could not start
+            processes_of.cache_clear()
+        pool = processes_of(worker.state.nthreads, *processes)
+        files = [font_file(name, content, scratch) for name, content in zip(names, fonts, strict=True)]
+    with tempfile.TemporaryDirectory(prefix="glyphspline-", dir=scratch) as folder:
         out = Path(folder)
         for name in folders:
             (out / name).mkdir()
-        result = shop.pool.submit(make_call, call, {OUT: out, **dict(enumerate(paths))}).result()
-        files = {f"{file.parent.name}/{file.name}": file.read_bytes() for file in sorted(out.glob("*/*"))}
-    return result, files
-
-
-@contextmanager
-def workshop(processes: Processes, size: int, scratch: str) -> Iterator[Workshop]:
-    """The processes, new ones if there are none of this kind; idle ones of other kinds are ended then."""
-    with _lock:
-        for other, shop in list(_workshops.items()):
-            if not shop.calls and (other != processes or shop.pool.is_closed):
-                del _workshops[other]
-                shop.pool.shutdown()
-                shutil.rmtree(shop.folder, ignore_errors=True)
-        if processes not in _workshops:
-            # dask starts its workers as daemonic, which may have no children: these would outlive it. Ours end with it,
-            # since their pipes close.
-            multiprocessing.current_process().daemon = False
-            pool = WorkerPool(size, *processes)
-            _workshops[processes] = Workshop(pool, Path(tempfile.mkdtemp(prefix="glyphspline-fonts-", dir=scratch)))
-        shop = _workshops[processes]
-        shop.calls += 1
-    try:
-        yield shop
-    finally:
-        with _lock:
-            shop.calls -= 1
-
-
-@contextmanager
-def kept(shop: Workshop, fonts: Mapping[str, bytes]) -> Iterator[list[Path]]:
-    """Files of fonts, in the order given; of those that no call uses, the last used ``KEPT`` stay."""
-    with _lock:
-        for name, content in fonts.items():
-            if name not in shop.fonts:
-                (shop.folder / name).parent.mkdir(exist_ok=True)
-                write_whole(f"{shop.folder}/{name}", content)
-            shop.fonts[name] = shop.fonts.get(name, 0) + 1
-            shop.fonts.move_to_end(name)
-    try:
-        yield [shop.folder / name for name in fonts]
-    finally:
-        with _lock:
-            for name in fonts:
-                shop.fonts[name] -= 1
-            unused = [name for name, calls in shop.fonts.items() if not calls]
-            for name in unused[: max(0, len(shop.fonts) - KEPT)]:
-                del shop.fonts[name]
-                (shop.folder / name).unlink(missing_ok=True)
+        paths = {OUT: out, **{number: file.path for number, file in enumerate(files)}}
+        result = pool.submit(make_call, call, paths).result()
+        written = {f"{file.parent.name}/{file.name}": file.read_bytes() for file in sorted(out.glob("*/*"))}
+    return result, written
 
 
 def take_back(done: Any, paths: Mapping[int | str, Path], future: Future[Any]) -> None:

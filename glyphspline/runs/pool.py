@@ -163,13 +163,9 @@ class _Worker:
         self.sign = context.RawValue("d", time.monotonic())
         self.calls, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, self.sign, seconds, preload), daemon=True)
-        limit = threading.Timer(STARTING, kill_server)  # a start waits for the process from which workers are forked
-        limit.daemon = True
-        limit.start()
         try:
             self.process.start()
         finally:
-            limit.cancel()
             theirs.close()
 
     def receive(self, seconds: float) -> Any:

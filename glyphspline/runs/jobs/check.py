@@ -33,7 +33,7 @@ from ...report.findings_page import home_of
 from ...types import FloatArray, Head, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
-from ..schedule import Side, readers, side_of, sources, workers
+from ..schedule import Side, heads_of, readers, side_of, sources, workers
 from ..shapes import Shapes
 from ..spec import LIMITS
 
@@ -256,10 +256,9 @@ def check_font(
     chosen = tags if axes is None else tuple(axes)
     if unknown := [tag for tag in chosen if tag not in tags]:
         raise FontError(f"no axis {unknown[0]!r}: it has {', '.join(tags) or 'none'}", font=str(source.path))
-    index = source.gids
-    if unknown := [name for name in names if name not in index]:
+    if unknown := [name for name in names if name not in source.gids]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
-    tasks = [Head(name, index[name]) for name in sorted({*names}, key=index.__getitem__)]
+    tasks = list(heads_of(source, names).values())
     job = CheckJob(side_of(source), asked.thresholds, asked.kinds, source.outer)
     if chosen:
         job = AxesJob(job.side, job.thresholds, job.kinds, job.outer, chosen, asked.steps, asked.joints)

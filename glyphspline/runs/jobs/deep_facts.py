@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
-from itertools import groupby
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -18,37 +16,28 @@ from ...readers.pens import NO_AREA
 from ..engine import Item, Job, Observer, run
 from ..schedule import Place, sources
 
-Glyph = tuple[int, int]
-"""The number of a face, and a glyph's index."""
-
 COUNTS = ("contours", "segments", "doubled_points", "leftover_points", "contours_left_out", "broken_glyphs")
 """Facts that are numbers."""
 
 
 @dataclass(frozen=True)
-class FactsJob(Job[Glyph, dict[str, Any]]):
-    """Facts from the outlines of the glyphs of some faces."""
+class FactsJob(Job[int, dict[str, Any]]):
+    """Facts from the outlines of glyphs, by their indices."""
 
-    places: tuple[Place, ...]
+    place: Place
 
     chunk = 200
     """A few megabytes of outlines."""
 
-    def read(self, tasks: Sequence[Glyph]) -> list[Item | Exception]:
-        """Outlines; those of one face are looked at together. One that cannot be opened is not opened for each."""
-        found: list[Item | Exception] = []
-        for face, group in groupby(tasks, itemgetter(0)):
-            gids = [gid for _, gid in group]
-            try:
-                (source,) = sources(self.places[face])
-            except GlyphsplineError as error:
-                found += [error] * len(gids)
-            else:
-                read = source.outlines(gids, errors="return")
-                found += [Item(each, kind=face) if isinstance(each, Outline) else each for each in read]
-        return found
+    def read(self, tasks: Sequence[int]) -> list[Item | Exception]:
+        """Outlines. A face that cannot be opened is not opened for each."""
+        try:
+            (source,) = sources(self.place)
+        except GlyphsplineError as error:
+            return [error] * len(tasks)
+        return [Item(each) if isinstance(each, Outline) else each for each in source.outlines(tasks, errors="return")]
 
-    def together(self, tasks: Sequence[Glyph], contents: Sequence[Any]) -> dict[str, Any]:
+    def together(self, tasks: Sequence[int], contents: Sequence[Any]) -> dict[str, Any]:
         """Facts from the outlines of glyphs: counts, and unusual glyphs by name.
 
         ``doubled_points`` are those that readers leave out, ``leftover_points`` those of :mod:`..checks` on lines.
@@ -69,9 +58,9 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
             "overlaps": [outline.name for outline in contents if overlaps(outline)] if has("overlaps") else None,
         }
 
-    def failed(self, task: Glyph, error: Exception) -> dict[str, Any]:
+    def failed(self, task: int, error: Exception) -> dict[str, Any]:
         """A broken glyph."""
-        name = getattr(error, "glyph", None) or f"gid {task[1]}"
+        name = getattr(error, "glyph", None) or f"gid {task}"
         return dict.fromkeys(COUNTS, 0) | {"broken_glyphs": 1, "broken": [name], "degenerate": []}
 
 
@@ -82,12 +71,12 @@ def add_glyph_facts(path: Path, facts: dict[str, Any], executor: Executor, obser
         path: the file. facts: are added to. executor: of the calls.
         observer: called with the number of glyphs done, of all, and of those that cannot be read.
     """
-    faces = facts["fonts"]
-    job = FactsJob(tuple((path, face["face_index"], tuple(face["location"].items())) for face in faces))
-    tasks = [(k, gid) for k, face in enumerate(faces) for gid in range(face["glyphs"])]
-    found = list(run(job, tasks, executor, ordered=True, observer=observer))
-    for k, face in enumerate(faces):
-        face |= _together([part.result for part in found if part.tasks[0][0] == k])
+    done, total = 0, sum(face["glyphs"] for face in facts["fonts"])
+    for face in facts["fonts"]:
+        job = FactsJob((path, face["face_index"], tuple(face["location"].items())))
+        found = run(job, range(face["glyphs"]), executor, ordered=True, observer=observer, before=done, total=total)
+        face |= _together([part.result for part in found])
+        done += face["glyphs"]
 
 
 def _together(parts: Sequence[dict[str, Any]]) -> dict[str, Any]:

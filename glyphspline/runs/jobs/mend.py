@@ -20,7 +20,7 @@ from ...readers.designspace import Designspace
 from ...readers.ufo import Ufo
 from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
-from ..schedule import Place, place_of, sources, workers
+from ..schedule import Place, heads_of, place_of, sources, workers
 from ..spec import LIMITS
 
 OF_COMPONENT = "is of a component"
@@ -166,11 +166,10 @@ def mend_source(
         from ...writers.back.back import editable
 
         editable(source)
-    tasks = [Head(name, source.gids[name]) for name in sorted({*names}, key=source.gids.__getitem__)]
     job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
     found, new = MendedSource(str(source.path)), []
     with workers(0, executor=executor) as pool:
-        for part in run(job, tasks, pool, ordered=True, observer=observer):
+        for part in run(job, list(heads_of(source, names).values()), pool, ordered=True, observer=observer):
             for (name, _, _), one in zip(part.tasks, part.result, strict=True):
                 found.glyphs += one.error is None
                 if one.error is not None:
