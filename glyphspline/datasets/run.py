@@ -162,12 +162,12 @@ def _prepare(out: str, plan: Plan, restart: bool) -> None:
     shards = [name for name in remote.listing(f"{out}/data") if SHARD_NAME.fullmatch(name)]
     old = _record(out)
     if old is None:
-        if shards or remote.exists(f"{out}/{CARD}") or remote.exists(f"{out}/{FONTS}"):
+        if shards or any(remote.size(f"{out}/{name}") is not None for name in (CARD, FONTS)):
             raise OutputError("holds files that are of no data set: give another folder", font=out)
     elif restart:
         remove_unfinished(Path(out))  # of a store there is no such folder
         for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, RECORD):
-            if remote.exists(f"{out}/{name}"):
+            if remote.size(f"{out}/{name}") is not None:
                 remote.remove(f"{out}/{name}")
     elif changed := differences(old, json.loads(record_text(plan))):
         raise OutputError("holds another data set; --restart does it anew:\n  " + "\n  ".join(changed), font=out)
@@ -182,7 +182,7 @@ def _record(out: str) -> dict[str, Any] | None:
         OutputError: a file of that name is no such record.
     """
     path = f"{out}/{RECORD}"
-    if not remote.exists(path):
+    if remote.size(path) is None:
         return None
     with remote.read(path) as file, reading(path):
         record = json.loads(file.read())
@@ -239,7 +239,7 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
         for number, of_font in fonts.items():
             totals[number] = totals.get(number, OfFont()).plus(of_font)
     remove_unfinished(Path(out))
-    sizes = {shard: remote.size(path) for shard, path in paths.items()}
+    sizes = {shard: remote.size(path) or 0 for shard, path in paths.items()}
     summary = Summary.of(plan, totals, sizes)
     remote.put(f"{out}/{FONTS}", fonts_file(plan, totals))
     remote.put(f"{out}/{CARD}", card(plan, summary, layout).encode())

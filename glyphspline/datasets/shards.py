@@ -69,13 +69,8 @@ def marked(table: Any, shapes: Shapes) -> tuple[Any, int]:
 
 def outside(table: Any) -> int:
     """Number of glyphs of a table with a contour that is not within the tolerance."""
-    pa = need("parquet")
-    within = table["within_tolerance"].combine_chunks()
-    rows = np.arange(len(within))
-    if pa.types.is_list(within.type):
-        rows, within = within.value_parent_indices().to_numpy(), within.flatten()
-    far = rows[np.array([one is False for one in within.to_pylist()], dtype=np.bool_)]
-    return len(table["gid"].take(pa.array(far)).unique())
+    rows = zip(table["gid"].to_pylist(), table["within_tolerance"].to_pylist(), strict=True)
+    return len({gid for gid, within in rows if False in (within if isinstance(within, list) else [within])})
 
 
 def write_shard(
@@ -141,7 +136,7 @@ def finished(path: str, mark: str) -> Held | None:
     pa = need("parquet")
     from pyarrow import parquet
 
-    if not remote.exists(path):
+    if remote.size(path) is None:
         return None
     try:
         with remote.read(path) as file:

@@ -165,13 +165,14 @@ def put(path: str, content: bytes | Callable[[BinaryIO], None]) -> None:
         raise OutputError(f"cannot be written: {error}", font=shown(path)) from error
 
 
-def exists(path: str) -> bool:
-    """Whether there is a file of that name."""
+def size(path: str) -> int | None:
+    """The size of a file in bytes; None if there is no file of that name."""
     if not is_url(path):
-        return os.path.isfile(path)
+        return os.path.getsize(path) if os.path.isfile(path) else None
     with suppress(FileNotFoundError):
-        return bool(asked(path, lambda system, there: system.info(there))["type"] == "file")
-    return False
+        found = asked(path, lambda system, there: system.info(there))
+        return int(found["size"]) if found["type"] == "file" else None
+    return None
 
 
 def listing(folder: str) -> list[str]:
@@ -196,16 +197,6 @@ def read(path: str) -> BinaryIO:
     with missing(path, OutputError):
         # Bytes that are fetched at once of a file that is read by parts.
         return cast(BinaryIO, asked(path, lambda system, there: system.open(there, "rb", block_size=1 << 16)))
-
-
-def size(path: str) -> int:
-    """The size of a file in bytes.
-
-    Raises:
-        OSError: there is no such file.
-    """
-    with read(path) as file:
-        return file.seek(0, os.SEEK_END)
 
 
 def remove(path: str) -> None:

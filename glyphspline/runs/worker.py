@@ -15,7 +15,6 @@ from ..fitting.convert import convert_many, unfitted
 from ..fitting.convert_masters import MastersResult
 from ..fitting.options import Options
 from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, end_to_end
-from ..outlines.contour_arrays import joined, offsets_of
 from ..outlines.outline import Outline
 from ..readers.source import OutlineOrError
 from ..report import FOLDER as GALLERY
@@ -38,13 +37,11 @@ def items(found: Sequence[OutlineOrError], options: Options | None, limits: Limi
 
     Their costs are segments and vertices; those that have more than any real glyph are errors.
     """
-    good = [outline for outline in found if isinstance(outline, Outline)]
-    vertices = iter([0.0] * len(good) if options is None else vertices_of(good, options))
-    return [one if isinstance(one, GlyphsplineError) else _item(one, next(vertices), limits) for one in found]
+    return [one if isinstance(one, GlyphsplineError) else _item(one, options, limits) for one in found]
 
 
-def _item(outline: Outline, vertices: float, limits: Limits) -> Item | GlyphsplineError:
-    segments = len(outline.arrays.degrees)
+def _item(outline: Outline, options: Options | None, limits: Limits) -> Item | GlyphsplineError:
+    segments, vertices = len(outline.arrays.degrees), 0.0 if options is None else vertices_of(outline, options)
     if error := limits.error_of(segments):
         return error
     if not vertices <= limits.vertices:
@@ -52,17 +49,15 @@ def _item(outline: Outline, vertices: float, limits: Limits) -> Item | Glyphspli
     return Item(outline, segments + vertices, outline.metrics)
 
 
-def vertices_of(outlines: Sequence[Outline], options: Options) -> list[float]:
+def vertices_of(outline: Outline, options: Options) -> float:
     """Estimated number of vertices for ``step`` or ``count``, from the lengths of control polygons."""
-    if options.step is None or not outlines:
-        return [float(len(outline.contours) * (options.count or 0)) for outline in outlines]
-    points, _, _, starts = joined([outline.arrays for outline in outlines])
-    ends = offsets_of([len(outline.arrays.points) for outline in outlines])
+    if options.step is None:
+        return float(len(outline.contours) * (options.count or 0))
+    points, _, _, starts = outline.arrays
     with np.errstate(all="ignore"):
-        sides = np.zeros(len(points) + 1)
-        sides[1:-1] = np.hypot(*(points[1:] - points[:-1]).T)
-        sides[starts] = 0.0  # from one contour to the next
-        return [float(sides[a:b].sum()) / options.step for a, b in pairwise(ends.tolist())]
+        sides = np.hypot(*np.diff(points, axis=0, prepend=points[:1]).T)
+        sides[starts[:-1]] = 0.0  # from one contour to the next
+        return float(sides.sum()) / options.step
 
 
 def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Outline]) -> list[Done | GlyphsplineError]:

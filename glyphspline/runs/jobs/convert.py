@@ -145,7 +145,7 @@ def convert_font(
     require_libraries(spec)
     check_back(source, spec)
     with locked(out):
-        table = table_of(source, out, spec)
+        table = next((path for path in font_files(source, out, spec) if path.suffix == f".{PARQUET}"), None)
         prepare(out, spec, describe(source, spec, glyphs, None), restart, table)
         rows = Rows(table, source.sha256) if table else None
         record = read_record(out, rows)
@@ -247,11 +247,6 @@ def font_files(source: Source, out: Path, spec: RunSpec) -> list[Path]:
     """The run's files of the formats with one file a font."""
     stem = (re.sub(r"[^\w-]+", "", source.family)[:50] or "font") + "-spline"
     return [out / f"{stem}.{name}" for name in spec.whole]
-
-
-def table_of(source: Source, out: Path, spec: RunSpec) -> Path | None:
-    """The run's table of contours, if it has one."""
-    return next((path for path in font_files(source, out, spec) if path.suffix == f".{PARQUET}"), None)
 
 
 def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> list[str]:
