@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import io
 import shlex
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from itertools import chain
-from typing import Any
+from typing import Any, BinaryIO
 
 from ..extras import need
 from ..fields import arguments
@@ -125,10 +124,9 @@ class Summary:
 
 
 HUB = {
-    "OFL-1.1": "ofl-1.1", "Apache-2.0": "apache-2.0", "MIT": "mit", "CC0-1.0": "cc0-1.0", "CC-BY-4.0": "cc-by-4.0",
-    "CC-BY-3.0": "cc-by-3.0", "CC-BY-SA-4.0": "cc-by-sa-4.0", "CC-BY-SA-3.0": "cc-by-sa-3.0", UNKNOWN: "unknown",
+    "OFL-1.1", "Apache-2.0", "MIT", "CC0-1.0", "CC-BY-4.0", "CC-BY-3.0", "CC-BY-SA-4.0", "CC-BY-SA-3.0", UNKNOWN,
 }  # fmt: skip
-"""What the header calls a licence; all others are "other" there."""
+"""Licences that the header has, in lower case; all others are "other" there."""
 
 SIZES = {
     1e3: "n<1K", 1e4: "1K<n<10K", 1e5: "10K<n<100K", 1e6: "100K<n<1M", 1e7: "1M<n<10M", 1e8: "10M<n<100M",
@@ -136,8 +134,8 @@ SIZES = {
 """What the header calls a number of rows below these."""
 
 
-def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
-    """``fonts.parquet``: a row for each face at each location, with what failed and why."""
+def write_fonts(plan: Plan, totals: Mapping[int, OfFont], file: BinaryIO) -> None:
+    """Write ``fonts.parquet``: a row for each face at each location, with what failed and why."""
     pa = need("parquet")
     from pyarrow import parquet
 
@@ -157,10 +155,8 @@ def fonts_file(plan: Plan, totals: Mapping[int, OfFont]) -> bytes:
         pa.field(name, type_of(kind), metadata={"unit": units[name]} if name in units else None)
         for name, (kind, _) in columns.items()
     ])  # fmt: skip
-    file = io.BytesIO()
     table = pa.table({name: values for name, (_, values) in columns.items()}, schema=schema)
     parquet.write_table(table, file, compression="zstd", row_group_size=1000)
-    return file.getvalue()
 
 
 def command(spec: DatasetSpec) -> str:
@@ -238,7 +234,7 @@ def _lines(*lines: str) -> str:
 
 def _header(summary: Summary, splits: Iterable[str]) -> str:
     """Facts about the data set for Hugging Face's ``datasets``, as YAML."""
-    hub = list(dict.fromkeys(HUB.get(name, "other") for name in sorted(summary.licences)))
+    hub = list(dict.fromkeys(name.lower() if name in HUB else "other" for name in sorted(summary.licences)))
     licence = [f"license: {hub[0]}"] if len(hub) == 1 else ["license:", *(f"- {name}" for name in hub)] if hub else []
     default = ["- config_name: default", "  default: true", "  data_files:"] if splits else []
     for split in splits:

@@ -26,7 +26,7 @@ from ..runs.rows import UNFINISHED, Made, Unfinished, remove_unfinished, streame
 from ..runs.schedule import Place, kinds_for, sources, workers
 from ..runs.shapes import Shapes
 from ..runs.spec import LIMITS, differences
-from .card import Summary, card, fonts_file
+from .card import Summary, card, write_fonts
 from .columns import schema
 from .plan import Plan, Shard, Task, plan_of, record_text
 from .scan import ScanJob, selected
@@ -172,7 +172,7 @@ def _prepare(out: str, plan: Plan, restart: bool) -> None:
     elif changed := differences(old, json.loads(record_text(plan))):
         raise OutputError("holds another data set; --restart does it anew:\n  " + "\n  ".join(changed), font=out)
     remote.listing(out)  # removes what an interrupted run has left
-    remote.put(f"{out}/{RECORD}", record_text(plan))
+    remote.put(f"{out}/{RECORD}", lambda file: file.write(record_text(plan)))
 
 
 def _record(out: str) -> dict[str, Any] | None:
@@ -241,8 +241,8 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
     remove_unfinished(Path(out))
     sizes = {shard: remote.size(path) or 0 for shard, path in paths.items()}
     summary = Summary.of(plan, totals, sizes)
-    remote.put(f"{out}/{FONTS}", fonts_file(plan, totals))
-    remote.put(f"{out}/{CARD}", card(plan, summary, layout).encode())
+    remote.put(f"{out}/{FONTS}", lambda file: write_fonts(plan, totals, file))
+    remote.put(f"{out}/{CARD}", lambda file: file.write(card(plan, summary, layout).encode()))
     return summary
 
 

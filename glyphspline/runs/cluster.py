@@ -194,7 +194,7 @@ def call_there(
         out = Path(folder)
         for name in folders:
             (out / name).mkdir()
-        paths = {OUT: out, **{number: file.path for number, file in enumerate(files)}}
+        paths: dict[int | str, Path] = {OUT: out, **dict(enumerate(file.path for file in files))}
         result = pool.submit(make_call, call, paths).result()
         written = {f"{file.parent.name}/{file.name}": file.read_bytes() for file in sorted(out.glob("*/*"))}
     return result, written

@@ -134,11 +134,8 @@ def check_whole(url: str) -> None:
         raise OutputError(f"{scheme}:// is not written to, only folders and object stores: {stores}", font=shown(url))
 
 
-def put(path: str, content: bytes | Callable[[BinaryIO], None]) -> None:
-    """Write a file whole: into a store by one put; else under a temporary name, synced to the disk, then renamed.
-
-    Args:
-        content: of the file, or what writes it.
+def put(path: str, write: Callable[[BinaryIO], object]) -> None:
+    """Have a file written whole: into a store by one put; else under a temporary name, synced, then renamed.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
@@ -146,23 +143,17 @@ def put(path: str, content: bytes | Callable[[BinaryIO], None]) -> None:
     if not is_url(path):
         make_folder(Path(path).parent)
         with replacing(Path(path), durable=True) as file:
-            if isinstance(content, bytes):
-                file.write(content)
-            else:
-                content(file)
+            write(file)
         return
     check_whole(path)
-    try:
-        if isinstance(content, bytes):
-            asked(path, lambda system, there: system.pipe_file(there, content))
-            return
-        with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
-            whole = Path(folder) / "whole"
-            with writing(whole), open(whole, "xb") as file:
-                content(file)
+    with tempfile.TemporaryDirectory(prefix="glyphspline-") as folder:
+        whole = Path(folder) / "whole"
+        with writing(whole), open(whole, "xb") as file:
+            write(file)
+        try:
             asked(path, lambda system, there: system.put_file(str(whole), there))
-    except FileNotFoundError as error:
-        raise OutputError(f"cannot be written: {error}", font=shown(path)) from error
+        except FileNotFoundError as error:
+            raise OutputError(f"cannot be written: {error}", font=shown(path)) from error
 
 
 def size(path: str) -> int | None:

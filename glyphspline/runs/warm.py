@@ -60,7 +60,11 @@ REGIONS = np.array([[[0.0, 1.0, 1.0]]])
 
 @cache
 def prepare(kind: str) -> None:
-    """Do the small runs of a kind of work, once in a process."""
+    """Do the small runs of a kind of work, once in a process, with what reads outlines and all modules of a worker."""
+    from ..readers.opentype.bulk import load_compiled
+    from . import worker  # noqa: F401
+
+    load_compiled()
     WORK[kind]()
 
 
@@ -115,18 +119,9 @@ def converted(options: Options) -> Any:
     from ..fitting.convert import convert
     from ..writers.svg.document import to_svg
 
-    read()
     result = convert(SHAPES, options)
     to_svg(result)
     return result
-
-
-def read() -> None:
-    """Load what reads outlines, after all modules of a worker."""
-    from ..readers.opentype.bulk import load_compiled
-    from . import worker  # noqa: F401
-
-    load_compiled()
 
 
 def interpolations() -> None:
@@ -188,7 +183,6 @@ def checks() -> None:
     from ..checks.kinds import Thresholds
     from ..checks.on_axes import on_axes
 
-    read()
     check(SHAPES)
     check(Outline("twice", contours=(KNOT, KNOT)))
     disc = MasterContour(np.stack([DISC.points, DISC.points * 2]), DISC.degrees)
@@ -209,7 +203,6 @@ def comparisons() -> None:
     """Outlines compared: one moved, one that lacks a contour."""
     from ..comparing.compare import compare
 
-    read()
     compare(SHAPES, Outline("shapes", contours=(LEAF.reversed(), SQUARE, DISC)))
 
 
@@ -218,7 +211,6 @@ def unfitted() -> None:
     from ..fitting.results import as_glyph
     from ..writers.svg.document import to_svg
 
-    read()
     to_svg(as_glyph(SHAPES))
 
 
@@ -228,7 +220,6 @@ def points() -> None:
     from ..outlines.canonical_outlines import canonical_outlines
     from ..outlines.resampling import at_vertices, resampled
 
-    read()
     both = (Outline("in order", contours=(SQUARE, DISC)), Outline("other order", contours=(LEAF, DISC)))
     canonical_outlines([SHAPES, *both])
     arrays = as_glyph(SHAPES).arrays

@@ -74,6 +74,10 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
     made.kill()
 
 
+def put(path: str, content: bytes) -> None:
+    remote.put(path, lambda file: file.write(content))
+
+
 @pytest.fixture(params=["s3", "memory", "file", "path"])
 def folder(request: pytest.FixtureRequest, tmp_path: Path) -> str:
     if request.param == "s3":
@@ -89,9 +93,9 @@ def test_files_are_put_listed_read_and_removed(folder: str) -> None:
     assert remote.listing(folder) == []
     assert remote.size(f"{folder}/b.bin") is None
     remote.put(f"{folder}/b.bin", write)
-    remote.put(f"{folder}/a.bin", b"first")
-    remote.put(f"{folder}/a.bin", b"second")
-    remote.put(f"{folder}/deep/c.bin", b"")
+    put(f"{folder}/a.bin", b"first")
+    put(f"{folder}/a.bin", b"second")
+    put(f"{folder}/deep/c.bin", b"")
     assert remote.listing(folder) == ["a.bin", "b.bin"]
     assert remote.size(f"{folder}/a.bin")
     assert remote.size(f"{folder}/deep") is None
@@ -115,7 +119,7 @@ def test_what_fails_while_it_is_written_leaves_the_old_file(folder: str) -> None
         file.write(b"half")
         raise KeyboardInterrupt
 
-    remote.put(f"{folder}/a.bin", b"whole")
+    put(f"{folder}/a.bin", b"whole")
     with pytest.raises(KeyboardInterrupt):
         remote.put(f"{folder}/a.bin", break_off)
     assert remote.listing(folder) == ["a.bin"]
@@ -129,7 +133,7 @@ def test_parquet_in_a_store_is_read_by_parts(server: Server) -> None:
 
     file = BytesIO()
     parquet.write_table(pa.table({"a": list(range(100_000)), "b": [str(k) for k in range(100_000)]}), file, 1000)
-    remote.put("s3://bucket/table.parquet", file.getvalue())
+    put("s3://bucket/table.parquet", file.getvalue())
     with remote.read("s3://bucket/table.parquet") as there:
         table = parquet.ParquetFile(there)
         assert table.metadata.num_rows == 100_000
@@ -140,7 +144,7 @@ def test_a_server_that_comes_back_is_waited_for(server: Server) -> None:
     server.kill()
     again = threading.Timer(2.0, server.start)
     again.start()
-    remote.put("s3://bucket/patient.bin", b"there")
+    put("s3://bucket/patient.bin", b"there")
     again.join()
     with remote.read("s3://bucket/patient.bin") as file:
         assert file.read() == b"there"
@@ -151,7 +155,7 @@ def test_a_server_that_stays_away_is_said(server: Server, monkeypatch: pytest.Mo
     server.kill()
     try:
         with pytest.raises(OutputError, match=r"^s3://bucket/away.bin: the store does not answer: "):
-            remote.put("s3://bucket/away.bin", b"there")
+            put("s3://bucket/away.bin", b"there")
         with pytest.raises(OutputError, match="does not answer"):
             remote.size("s3://bucket/away.bin")
         with pytest.raises(FontError, match="does not answer"):
@@ -174,7 +178,7 @@ def test_a_server_that_stays_away_is_said(server: Server, monkeypatch: pytest.Mo
 )
 def test_a_url_that_cannot_be_used_is_said(url: str, said: str, server: Server) -> None:
     with pytest.raises(GlyphsplineError, match=said) as caught:
-        remote.put(url, b"")
+        put(url, b"")
     assert SECRET not in str(caught.value)
 
 
@@ -191,9 +195,9 @@ def test_a_store_that_refuses_is_said(server: Server, monkeypatch: pytest.Monkey
     def refuse(*args: object, **kwargs: object) -> None:
         raise PermissionError("Access Denied")
 
-    monkeypatch.setattr(MemoryFileSystem, "pipe_file", refuse)
+    monkeypatch.setattr(MemoryFileSystem, "put_file", refuse)
     with pytest.raises(OutputError, match="memory://a/b: the store refuses: Access Denied"):
-        remote.put("memory://a/b", b"")
+        put("memory://a/b", b"")
 
 
 def test_fonts_are_fetched_once_by_content(server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,8 +205,8 @@ def test_fonts_are_fetched_once_by_content(server: Server, tmp_path: Path, monke
     monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "cache"))
     content = FONT.read_bytes()
     for name in ("fonts/a.ttf", "fonts/deep/b.otf", "fonts/README.txt", "copies/a.ttf"):
-        remote.put(f"s3://bucket/{name}", content if name.endswith("tf") else b"text")
-    remote.put("s3://bucket/fonts/deep/c.ttf", b"other")
+        put(f"s3://bucket/{name}", content if name.endswith("tf") else b"text")
+    put("s3://bucket/fonts/deep/c.ttf", b"other")
     assert [path.name for path in find_fonts(["s3://bucket/fonts/a.ttf"])] == ["a.ttf"]
     found = find_fonts(["s3://bucket/fonts", "s3://bucket/copies/"])
     assert sorted(path.name for path in found) == ["a.ttf", "b.otf", "c.ttf"]
@@ -269,7 +273,7 @@ def test_a_cluster_that_loses_a_worker_and_a_server_that_is_restarted_do_not_sho
     distributed = import_module("distributed")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     for font in FONTS:
-        remote.put(f"s3://bucket/installed/{Path(font).name}", Path(font).read_bytes())
+        put(f"s3://bucket/installed/{Path(font).name}", Path(font).read_bytes())
     happened: list[int] = []
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1", silence_logs=50
