@@ -52,7 +52,7 @@ class Summary:
     licences: dict[str, tuple[int, int]] = field(default_factory=dict)
     failed: int = 0
     outside_tolerance: int = 0
-    failures: list[tuple[str, str, str]] = field(default_factory=list)
+    failures: list[tuple[str, ...]] = field(default_factory=list)
     unread: list[tuple[str, str]] = field(default_factory=list)
     seconds: float = 0.0
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import platform
 import unicodedata
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
@@ -68,8 +69,7 @@ class Plan:
         """The files, in order."""
         found: list[Shard] = []
         for split in SPLITS:
-            own = [(k, font) for k, font in enumerate(self.fonts) if font.split == split]
-            packs = list(_packs(own, self.sizes.shard))
+            packs = _packs([(k, font) for k, font in enumerate(self.fonts) if font.split == split], self.sizes.shard)
             found += [
                 Shard(f"data/{split}-{k:05d}-of-{len(packs):05d}.parquet", split, pieces)
                 for k, pieces in enumerate(packs)
@@ -113,21 +113,19 @@ class Plan:
         return _digest(self.record)
 
 
-def _packs(fonts: Sequence[tuple[int, FontFacts]], size: int) -> Iterator[tuple[Piece, ...]]:
+def _packs(fonts: Sequence[tuple[int, FontFacts]], size: int) -> list[tuple[Piece, ...]]:
     """The glyphs of a split's fonts in packs of a size."""
-    pack: list[Piece] = []
-    room = size
+    packs: dict[int, list[Piece]] = defaultdict(list)
+    before = 0
     for number, font in fonts:
         first = 0
         while first < font.taken:
-            last = min(font.taken, first + room)
-            pack.append(Piece(number, first, last))
-            room, first = room - (last - first), last
-            if not room:
-                yield tuple(pack)
-                pack, room = [], size
-    if pack:
-        yield tuple(pack)
+            pack, used = divmod(before + first, size)
+            last = min(font.taken, first + size - used)
+            packs[pack].append(Piece(number, first, last))
+            first = last
+        before += font.taken
+    return list(map(tuple, packs.values()))
 
 
 def plan_of(spec: DatasetSpec, found: Sequence[FontFacts], sizes: Sizes = USUAL) -> Plan:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, BinaryIO, NamedTuple, TypeAlias
 
@@ -41,7 +41,7 @@ class OfFont(NamedTuple):
     duplicates: int = 0
     failed: int = 0
     outside: int = 0
-    reasons: tuple[tuple[str, str], ...] = ()
+    reasons: tuple[Sequence[str], ...] = ()
 
     def plus(self, other: OfFont) -> OfFont:
         """The sum of two."""
@@ -144,7 +144,7 @@ def finished(path: str, mark: str) -> Held | None:
         if metadata.get(MARK) != mark.encode():
             return None
         facts = json.loads(metadata[FACTS])
-        return {int(k): OfFont._make([*counts, tuple(map(tuple, reasons))]) for k, (*counts, reasons) in facts.items()}
+        return {int(k): OfFont._make([*counts, tuple(reasons)]) for k, (*counts, reasons) in facts.items()}
     except (pa.ArrowException, KeyError, ValueError, TypeError):
         return None
 

@@ -32,7 +32,7 @@ class Made(NamedTuple):
 
     rows: bytes
     glyphs: int
-    failed: list[tuple[str, str]]
+    failed: Sequence[Sequence[str]]
 
 
 def streamed(table: Any) -> bytes:
@@ -84,10 +84,7 @@ class Unfinished:
             return []
         if (table.schema.metadata or {}).get(b"mark") != self._mark:
             return []
-        return [
-            Made(rows, glyphs, [(name, why) for name, why in failed])
-            for rows, glyphs, failed in zip(*table.to_pydict().values(), strict=True)
-        ]
+        return list(map(Made, *table.to_pydict().values()))
 
     def __iter__(self) -> Iterator[list[Made]]:
         """The parts of each chunk that the folder held when it was opened."""
