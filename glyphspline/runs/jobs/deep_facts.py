@@ -41,10 +41,10 @@ class FactsJob(Job[Glyph, dict[str, Any]]):
             gids = [gid for _, gid in group]
             try:
                 (source,) = sources(self.places[face])
+                read = source.outlines(gids, errors="return")
             except GlyphsplineError as error:
                 found += [error] * len(gids)
             else:
-                read = source.outlines(gids, errors="return")
                 found += [Item(each, kind=face) if isinstance(each, Outline) else each for each in read]
         return found
 
