@@ -176,7 +176,7 @@ class Paragraph:
             count -= 1
 
     def _line(self, start: int, stop: int, last: bool) -> Line:
-        """The characters from ``start`` up to ``stop`` as a line; what cutting changes is shaped again."""
+        """The characters from ``start`` up to ``stop`` as a line; runs that it cuts are shaped again."""
         inside = range(bisect(self._starts, start) - 1, bisect_left(self._starts, stop)) if stop > start else ()
         hyphen = None if last or not inside or self.text[stop - 1] != SOFT_HYPHEN else self._hyphen(stop)
         order = visual_order([self.runs[k].level for k in inside])
@@ -184,15 +184,12 @@ class Paragraph:
         for k in (inside[i] for i in order):
             run, glyphs = self.runs[k], self.shaped[k]
             part = run._replace(start=max(run.start, start), stop=min(run.stop, stop))
-            cuts = [place for place in (part.start, part.stop) if run.start < place < run.stop]
             if hyphen and part.stop == stop:
                 self.codes[stop - 1] = hyphen
                 glyphs = self._shape(self.codes, part)
                 self.codes[stop - 1] = ord(SOFT_HYPHEN)
-            elif not all(glyphs.may_be_cut(place) for place in cuts):
+            elif part != run:
                 glyphs = self._shape(self.codes, part)
-            elif cuts:
-                glyphs = glyphs.part(part.start, part.stop)
             pieces.append((part, glyphs))
         return Line(tuple(pieces), last)
 
