@@ -217,6 +217,7 @@ def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
 def load_compiled() -> None:
     """Load the compiled code, which takes some tenths of a second, before a font is opened."""
     _functions()
+    _record(np.zeros(LONGEST), 0, (0.0, 0.0))  # for Python: the callbacks have code of their own
     none = np.empty(0, dtype=np.int64)
     _contours(np.zeros(FIRST), np.array([FIRST]), none)
     _expected(np.frombuffer(bytes(1), dtype=np.uint8), np.zeros(2, dtype=np.int64), none)
