@@ -31,8 +31,11 @@ class Source(Protocol):
 
     path: Path
     axes: tuple[DesignAxis, ...]
-    glyph_names: tuple[str, ...]
     location: Mapping[str, float]
+
+    @property
+    def glyph_names(self) -> Sequence[str]:
+        """All glyphs."""
 
     def masters(self, name: str) -> Masters:
         """A glyph in all its masters."""

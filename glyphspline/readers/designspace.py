@@ -189,7 +189,6 @@ class _Part:
 
 def _drawing(master: _Master, name: str) -> tuple[list[_Part], float]:
     """The parts of a glyph in a master, in order, and its advance."""
-    parsed(master.glyphs.getGLIF(name))  # refuses entities
     glyph, pen = master.glyphs[name], RecordingPen()
     glyph.replay(PointToSegmentPen(pen, outputImpliedClosingLine=True))
     parts: list[_Part] = []

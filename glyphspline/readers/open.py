@@ -68,6 +68,14 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     return SvgDrawings.opened(path)
 
 
+def reopened(path: Path, face_index: int, location: Location) -> Source:
+    """A source that was open before, opened as :func:`open_source` does, but for the names and characters of a font.
+
+    Those take longest, and are read when they are asked for.
+    """
+    return next(open_faces(path, face_index, location)) if is_font(path) else open_source(path, face_index, location)
+
+
 def is_font(path: str | Path) -> bool:
     """Whether a path is to be read as a font file: it is one, or neither a folder, nor XML, nor a Glyphs file.
 

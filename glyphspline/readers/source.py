@@ -161,12 +161,12 @@ class Source(ABC):
                     log.warning("%s: axis %s goes from %s: %g taken for %g", self.path, axis.tag, limits, value, wanted)
         return MappingProxyType(within)
 
-    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
-        """Read glyphs; the result has an error in place of each broken glyph."""
+    def read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        """Read glyphs of this source; the result has an error in place of each broken glyph."""
         return [attempt(self.path, head.name, partial(self._outline, head)) for head in heads]
 
     def _outline(self, head: Head) -> Outline:
-        """Read one glyph, where :meth:`_read` is not overridden."""
+        """Read one glyph, where :meth:`read` is not overridden."""
         raise NotImplementedError
 
     def outline(self, name: str) -> Outline:
@@ -196,7 +196,7 @@ class Source(ABC):
             GlyphsplineError: a glyph is broken; the error names file and glyph.
         """
         heads = [self._head(glyph) for glyph in glyphs]
-        read = iter(self._read([head for head in heads if isinstance(head, Head)]))
+        read = iter(self.read([head for head in heads if isinstance(head, Head)]))
         found = [next(read) if isinstance(head, Head) else head for head in heads]
         if errors == "return":
             return found

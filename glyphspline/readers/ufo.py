@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -14,11 +15,11 @@ from fontTools.pens.recordingPen import RecordingPointPen
 from fontTools.ufoLib import UFOReader
 from fontTools.ufoLib.glifLib import GlyphSet
 
-from ..errors import FontError, GlyphsplineError
+from ..errors import FontError
 from ..outlines.outline import FontMetrics, Outline
 from ..types import Head
 from .pens import ContourPen
-from .source import Source, first_claims, parsed, reason
+from .source import Source, first_claims, parsed
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
 
@@ -70,10 +71,11 @@ class Ufo(Source):
         ordered = [name for name in dict.fromkeys(lib.get(ORDER_KEY, ())) if name in there]
         skipped = set(lib.get(SKIP_KEY, ()))
         self.glyph_names = tuple(n for n in [*ordered, *sorted(there - set(ordered))] if n not in skipped)
-        broken: dict[str, str] = {}
-        self.default_layer.broken = broken
-        claims = {name: self._claims(name, broken) for name in self.default_layer.contents}
-        self.cmap = first_claims((name, claims[name]) for name in self.glyph_names)
+
+    @cached_property
+    def cmap(self) -> Mapping[int, str]:  # type: ignore[override]
+        """Code point to the first glyph that has it."""
+        return first_claims((name, self._claims(name)) for name in self.glyph_names)
 
     def _bytes(self) -> Iterable[bytes]:
         for file in _files(self.path):
@@ -100,7 +102,7 @@ class Ufo(Source):
         return glyph.numbered(pen.own)
 
     def layer(self, name: str) -> GlyphSet:
-        """The glyphs of another layer. Their files are not checked for entities; see :func:`.source.parsed`.
+        """The glyphs of another layer.
 
         Raises:
             FontError: there is no such layer.
@@ -118,19 +120,13 @@ class Ufo(Source):
             raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
         return glyphs
 
-    def _claims(self, name: str, broken: dict[str, str]) -> list[int]:
-        """A glyph's code points. Its file is checked for entities here, before ufoLib reads it.
-
-        A broken glyph has none; ``broken`` gets the reason, for when it is read.
-        """
+    def _claims(self, name: str) -> list[int]:
+        """A glyph's code points; a broken one has none, and its error when it is read."""
         try:
             root = parsed(self.default_layer.getGLIF(name))
             return [int(item.get("hex"), 16) for item in root.iter("unicode")]
-        except GlyphsplineError as error:
-            broken[name] = error.message
-        except Exception as error:  # as in opening
-            broken[name] = f"cannot be drawn: {reason(error)}"
-        return []
+        except Exception:  # as in opening
+            return []
 
 
 class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
@@ -140,8 +136,7 @@ class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
 
     def __init__(self, name: str, glyphs: GlyphSet) -> None:
         super().__init__()
-        if name in getattr(glyphs, "broken", ()):
-            raise GlyphsplineError(glyphs.broken[name])
+        parsed(glyphs.getGLIF(name))  # refuses entities, before ufoLib reads them
         glyphs.readGlyph(name, self, self, validate=True)
 
     def draw(self, pen: Any) -> None:

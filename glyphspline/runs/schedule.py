@@ -8,7 +8,7 @@ from concurrent.futures import Executor, Future
 from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ..fitting.options import Options
 from ..types import Head
@@ -16,22 +16,10 @@ from .pool import WorkerPool, code_for
 from .spec import Limits, needs_fit
 
 if TYPE_CHECKING:
-    from ..outlines.outline import FontMetrics
     from ..readers import Source
-    from ..readers.source import OutlineOrError
 
 Place = tuple[Path, int, tuple[tuple[str, float], ...]]
 """A file, a face and a location."""
-
-Read = Callable[[Sequence[Head]], "Sequence[OutlineOrError]"]
-"""Reads outlines: of each glyph its outline, or its error."""
-
-
-class Side(NamedTuple):
-    """A source whose outlines are read; ``metrics`` are those of a font file, which is read in bulk."""
-
-    place: Place
-    metrics: FontMetrics | None
 
 
 def place_of(source: Source) -> Place:
@@ -39,35 +27,12 @@ def place_of(source: Source) -> Place:
     return source.path.absolute(), source.face_index, tuple(source.location.items())
 
 
-def side_of(source: Source) -> Side:
-    """A source as workers read its outlines."""
-    from ..readers import Font
-
-    return Side(place_of(source), source.metrics if type(source) is Font else None)
-
-
 @lru_cache(maxsize=1)
 def sources(*places: Place) -> list[Source]:
     """The sources of a job, opened once; only one job's are kept, as each may take 100 MB."""
-    from ..readers import open_source
+    from ..readers.open import reopened
 
-    return [open_source(path, face_index, dict(location)) for path, face_index, location in places]
-
-
-@lru_cache(maxsize=1)
-def readers(*sides: Side) -> list[Read]:
-    """The readers of a job's sources, opened once. One in bulk opens much faster than the font."""
-    return [_reader(*side) for side in sides]
-
-
-def _reader(place: Place, metrics: FontMetrics | None) -> Read:
-    if metrics is None:
-        (source,) = sources(place)
-        return lambda heads: source.outlines([head.gid for head in heads], errors="return")
-    from ..readers.opentype.bulk import BulkReader
-
-    bulk = BulkReader(*place)
-    return lambda heads: bulk.outlines(heads, metrics)
+    return [reopened(path, face_index, dict(location)) for path, face_index, location in places]
 
 
 def heads_of(source: Source, names: Iterable[str] | None = None) -> dict[str, Head]:
@@ -92,7 +57,6 @@ class InProcess(Executor):
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Forget the sources that are open: their files may have been edited when they are opened again."""
         sources.cache_clear()
-        readers.cache_clear()
 
 
 def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import groupby
-from unicodedata import bidirectional, normalize
+from unicodedata import bidirectional, category, normalize
+
+from fontTools.unicodedata.Mirrored import MIRRORED
 
 DEEPEST = 125
 """max_depth of UAX #9, BD2."""
@@ -19,16 +21,13 @@ ISOLATES, EMBEDDINGS = frozenset({"LRI", "RLI", "FSI"}), frozenset({"LRE", "RLE"
 REMOVED = EMBEDDINGS | {"PDF", "BN"}
 NEUTRAL = ISOLATES | {"B", "S", "WS", "ON", "PDI"}
 
-BRACKETS = (
-    "()[]{}༺༻༼༽᚛᚜⁅⁆⁽⁾₍₎⌈⌉⌊⌋\u2329\u232a❨❩❪❫❬❭❮❯❰❱❲❳❴❵⟅⟆⟦⟧⟨⟩⟪⟫⟬⟭⟮⟯⦃⦄⦅⦆⦇⦈⦉⦊⦋⦌⦍⦐⦏⦎⦑⦒⦓⦔⦕⦖⦗⦘⧘⧙⧚⧛⧼⧽⸢⸣⸤⸥⸦⸧⸨⸩"
-    "\u2e55\u2e56\u2e57\u2e58\u2e59\u2e5a\u2e5b\u2e5c\u3008\u3009《》「」『』【】〔〕〖〗〘〙〚〛﹙﹚﹛﹜﹝﹞（）［］｛｝｟｠｢｣"
-)
-"""Bidi_Paired_Bracket: each opening bracket and the closing one after it."""
+BRACKETS = {chr(a): chr(b) for a, b in MIRRORED.items() if category(chr(a)) == "Ps"}
+"""Opening to closing bracket: Bidi_Paired_Bracket."""
 
-CLOSING = {normalize("NFC", a): normalize("NFC", b) for a, b in zip(BRACKETS[::2], BRACKETS[1::2], strict=True)}
-"""Opening to closing bracket, canonical equivalents as one."""
+CLOSING = {normalize("NFC", a): normalize("NFC", b) for a, b in BRACKETS.items()}
+"""The same, canonical equivalents as one."""
 
-PAIRED = frozenset(BRACKETS)
+PAIRED = frozenset(BRACKETS) | frozenset(BRACKETS.values())
 
 
 def paragraph_level(classes: Sequence[str]) -> int:

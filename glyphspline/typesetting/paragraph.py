@@ -145,16 +145,7 @@ class Paragraph:
         hanging = np.array([character in HANGING for character in text])
         last_seen = np.maximum.accumulate(np.where(hanging, 0, np.arange(1, len(text) + 1)))
         seen = np.concatenate([[0], last_seen])[places]
-        lengths = self._ends[seen]
-        if SOFT_HYPHEN in text:
-            hyphens: dict[Run, float] = {}
-            for k, end in enumerate(seen.tolist()):
-                if 0 < end < len(text) and text[end - 1] == SOFT_HYPHEN:
-                    run = self._run_of(end - 1)._replace(start=0, stop=1)
-                    if run not in hyphens:
-                        hyphens[run] = float(self._along(self._shape([self._hyphen(end)], run).advance).sum())
-                    lengths[k] += hyphens[run]
-        return places, seen, np.maximum.accumulate(lengths)
+        return places, seen, np.maximum.accumulate(self._ends[seen])
 
     def _fitting(self, at: int, width: float) -> tuple[Line, int]:
         """The longest line from a place on that is not longer than ``width``, and where the next begins."""
@@ -176,7 +167,7 @@ class Paragraph:
             count -= 1
 
     def _line(self, start: int, stop: int, last: bool) -> Line:
-        """The characters from ``start`` up to ``stop`` as a line; what cutting changes is shaped again."""
+        """The characters from ``start`` up to ``stop`` as a line; runs that it cuts are shaped again."""
         inside = range(bisect(self._starts, start) - 1, bisect_left(self._starts, stop)) if stop > start else ()
         hyphen = None if last or not inside or self.text[stop - 1] != SOFT_HYPHEN else self._hyphen(stop)
         order = visual_order([self.runs[k].level for k in inside])
@@ -184,24 +175,18 @@ class Paragraph:
         for k in (inside[i] for i in order):
             run, glyphs = self.runs[k], self.shaped[k]
             part = run._replace(start=max(run.start, start), stop=min(run.stop, stop))
-            cuts = [place for place in (part.start, part.stop) if run.start < place < run.stop]
             if hyphen and part.stop == stop:
                 self.codes[stop - 1] = hyphen
                 glyphs = self._shape(self.codes, part)
                 self.codes[stop - 1] = ord(SOFT_HYPHEN)
-            elif not all(glyphs.may_be_cut(place) for place in cuts):
+            elif part != run:
                 glyphs = self._shape(self.codes, part)
-            elif cuts:
-                glyphs = glyphs.part(part.start, part.stop)
             pieces.append((part, glyphs))
         return Line(tuple(pieces), last)
 
-    def _run_of(self, place: int) -> Run:
-        return self.runs[bisect(self._starts, place) - 1]
-
     def _hyphen(self, stop: int) -> int:
         """The code point shown for the soft hyphen before ``stop``."""
-        shaper = self._shapers[self._run_of(stop - 1).font]
+        shaper = self._shapers[self.runs[bisect(self._starts, stop - 1) - 1].font]
         return ord(next((hyphen for hyphen in HYPHENS if shaper.has(hyphen)), SOFT_HYPHEN))
 
 

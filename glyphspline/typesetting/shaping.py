@@ -12,7 +12,7 @@ import uharfbuzz as hb
 
 from ..errors import GlyphsplineError
 from ..readers import Source
-from ..types import BoolArray, FloatArray, IntArray
+from ..types import FloatArray, IntArray
 from .setting import Feature, for_buffer
 
 CONTEXT = 8
@@ -44,14 +44,12 @@ class Shaped(NamedTuple):
     Attributes:
         gid: (n,). cluster: (n,) number in the paragraph of the first character that a glyph stands for.
         advance: (n, 2) by which a glyph moves the pen. offset: (n, 2) of its origin from the pen.
-        unsafe: (n,) whether text that is cut before the glyph's cluster has to be shaped again.
     """
 
     gid: IntArray
     cluster: IntArray
     advance: FloatArray
     offset: FloatArray
-    unsafe: BoolArray
 
     def spaced(self, step: FloatArray) -> Shaped:
         """With a step (2,) of the pen more behind each cluster; marks stay on their letters."""
@@ -63,19 +61,6 @@ class Shaped(NamedTuple):
         own = np.arange(len(cluster))
         advance = self.advance + (own == last)[:, None] * step
         return self._replace(advance=advance, offset=self.offset - ((own > last) & (last >= 0))[:, None] * step)
-
-    def part(self, first: int, last: int) -> Shaped:
-        """The glyphs of the characters from ``first`` up to ``last``."""
-        clusters, ends = self.cluster, [first, last]
-        if len(clusters) and clusters[0] > clusters[-1]:  # they fall from left to right
-            clusters, ends = -clusters, [1 - last, 1 - first]
-        chosen = slice(*np.searchsorted(clusters, ends).tolist())
-        return Shaped._make(column[chosen] for column in self)
-
-    def may_be_cut(self, place: int) -> bool:
-        """Whether the glyphs before and after a character's place are those of both texts shaped by themselves."""
-        unsafe = self.part(place, place + 1).unsafe
-        return len(unsafe) > 0 and not unsafe.any()
 
 
 class Shaper(ABC):
@@ -134,11 +119,10 @@ class HarfBuzzShaper(Shaper):
             raise GlyphsplineError(
                 "HarfBuzz gives up on the text: its tables grow it beyond measure", font=str(self.source.path)
             ) from error
-        infos = [(info.codepoint, info.cluster, info.flags) for info in buffer.glyph_infos]
-        numbers = np.array(infos, dtype=np.int64).reshape(-1, 3)
-        unsafe: BoolArray = (numbers[:, 2] & int(hb.GlyphFlags.UNSAFE_TO_BREAK)) != 0
+        infos = [(info.codepoint, info.cluster) for info in buffer.glyph_infos]
+        numbers = np.array(infos, dtype=np.int64).reshape(-1, 2)
         positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(-1, 4) * self.scale
-        return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2], unsafe)
+        return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2])
 
     def has(self, cluster: str) -> bool:
         """See :meth:`Shaper.has`. HarfBuzz knows other forms of a cluster, and what a font may lack."""
@@ -171,7 +155,7 @@ class PlainShaper(Shaper):
         cluster, glyph = glyphs[:, 0], glyphs[:, 1]
         advance, offset = np.zeros((2, len(glyph), 2))
         advance[:, 0] = [self._advances[number] * self.scale for number in glyph.tolist()]
-        return Shaped(glyph, cluster, advance, offset, np.zeros(len(glyph), dtype=np.bool_))
+        return Shaped(glyph, cluster, advance, offset)
 
     def _glyph(self, code: int) -> int:
         return self.source.gids.get(self._name(code) or ".notdef", -1)

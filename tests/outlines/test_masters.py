@@ -32,7 +32,7 @@ def largest_difference(path: Path, locations: Sequence[Mapping[str, float]]) -> 
     masters = [font.masters(name) for name in font.glyph_names]
     for location in locations:
         drawn = open_font(path, location=location)
-        at = np.array([drawn._hb.normalized[axis.tag] for axis in drawn.axes])  # rounded to 1/16384 by the format
+        at = np.array([drawn._face.normalized[axis.tag] for axis in drawn.axes])  # rounded to 1/16384 by the format
         for of_glyph, outline in zip(masters, drawn.outlines(drawn.glyph_names), strict=True):
             weights = of_glyph.weights_at(at)
             assert weights.sum() == pytest.approx(1, abs=1e-12)

@@ -25,7 +25,9 @@ from glyphspline.outlines.outline import FontMetrics, Outline
 from glyphspline.readers import Font, open_font, open_source
 from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader
-from glyphspline.readers.opentype.routes import HarfBuzz
+from glyphspline.readers.opentype.routes import Face
+from glyphspline.readers.pens import ContourPen
+from glyphspline.readers.source import attempt
 from glyphspline.types import Head
 from tests.places import FACES, FONTS
 from tests.readers.test_broken_fonts import with_components
@@ -39,9 +41,18 @@ def heads_of(font: Font) -> list[Head]:
 
 
 def read_carefully(font: Font, head: Head) -> Outline | GlyphsplineError:
-    """A glyph drawn with the pen, through HarfBuzz or fontTools."""
-    _, (expected,) = font._bulk._draw([head.gid])
-    return font._bulk.draw_again(head, font.metrics, expected)
+    """A glyph drawn with the pen: through HarfBuzz, or fontTools where a number of contours says that some are lost."""
+
+    def read() -> Outline:
+        _, (expected,) = font._bulk._draw([head.gid])
+        pen, advance = ContourPen(), float(font.shaper.get_glyph_h_advance(head.gid))
+        font.shaper.draw_glyph_with_pen(head.gid, pen)
+        pen.finish()
+        if expected == bulk.UNUSUAL or (expected >= 0 and pen.drawn != expected):
+            return font._face.by_fonttools(head, font.metrics)
+        return Outline(*head, advance, pen.contours, font.metrics, pen.notes, pen.snapped)
+
+    return attempt(font.path, head.name, read)
 
 
 def assert_same(found: Outline | GlyphsplineError, expected: Outline | GlyphsplineError) -> None:
@@ -59,11 +70,11 @@ def assert_same(found: Outline | GlyphsplineError, expected: Outline | Glyphspli
         assert (own.dtype, own.shape, own.tobytes()) == (other.dtype, other.shape, other.tobytes()), found.name
 
 
-def assert_all_same(font: Font, glyphs: int | None = None, size: int = bulk.BUFFER_SIZE) -> int:
-    """Compare all glyphs, read by the font and by a bulk reader of its own; how many have an error."""
+def assert_all_same(font: Font, glyphs: int | None = None, size: int = bulk.PASS) -> int:
+    """Compare all glyphs, read by the font and by a reader of its own; how many have an error."""
     heads = heads_of(font)[:glyphs]
     by_font = font.outlines([head.name for head in heads], errors="return")
-    alone = BulkReader(font.path, font.face_index, font.location, size=size).outlines(heads, font.metrics)
+    alone = BulkReader(font.path, font._face, size).outlines(heads, font.metrics)
     for head, *both in zip(heads, by_font, alone, strict=True):
         expected = read_carefully(font, head)
         for found in both:
@@ -79,13 +90,13 @@ def test_every_glyph_is_as_the_pen_has_it(file: str | Path, face_index: int, loc
 def counting(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The names of glyphs that are drawn again from now on."""
     read: list[str] = []
-    draw_again = BulkReader.draw_again
+    by_fonttools = Face.by_fonttools
 
-    def counted(self: BulkReader, head: Head, metrics: FontMetrics, expected: int) -> Outline | GlyphsplineError:
+    def counted(self: Face, head: Head, metrics: FontMetrics) -> Outline:
         read.append(head.name)
-        return draw_again(self, head, metrics, expected)
+        return by_fonttools(self, head, metrics)
 
-    monkeypatch.setattr(BulkReader, "draw_again", counted)
+    monkeypatch.setattr(Face, "by_fonttools", counted)
     return read
 
 
@@ -216,12 +227,11 @@ def test_one_rule_says_which_contours_are_flat(tmp_path: Path, monkeypatch: pyte
 def test_flat_contours_are_those_that_fonttools_draws_flat(tmp_path: Path) -> None:
     with_anchors(tmp_path / "anchors.ttf")
     font = open_font(tmp_path / "anchors.ttf")
-    other = HarfBuzz(tmp_path / "anchors.ttf", 0, {})
     for outline in font.outlines(list(ANCHORED)):
-        pen, advance = other.by_fonttools(outline.name)
-        assert (outline.notes, outline.advance) == (pen.notes, advance)
-        assert len(outline.contours) == len(pen.contours)
-        for own, its in zip(outline.contours, pen.contours, strict=True):
+        other = font._face.by_fonttools(Head(outline.name, outline.gid), font.metrics)
+        assert (outline.notes, outline.advance) == (other.notes, other.advance)
+        assert len(outline.contours) == len(other.contours)
+        for own, its in zip(outline.contours, other.contours, strict=True):
             np.testing.assert_array_equal(own.degrees, its.degrees)
             np.testing.assert_allclose(own.points, its.points, rtol=0, atol=0.5)  # fontTools rounds components
 
@@ -335,7 +345,7 @@ def test_a_broken_glyph_costs_itself_alone(damage: Callable[[Path], None], broke
     assert assert_all_same(open_font(tmp_path / "broken.font")) == broken
 
 
-def test_a_glyph_too_large_for_the_buffer_is_drawn_again(tmp_path: Path) -> None:
+def test_a_glyph_larger_than_a_pass_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pen, plain = T2CharStringPen(600, None), T2CharStringPen(600, None)
     pen.moveTo((0, 0))
     for k in range(90_000):
@@ -355,4 +365,9 @@ def test_a_glyph_too_large_for_the_buffer_is_drawn_again(tmp_path: Path) -> None
     builder.save(tmp_path / "large.otf")
     font = open_font(tmp_path / "large.otf")
     assert assert_all_same(font) == 0
+    read = counting(monkeypatch)
     assert len(font.outline(font.glyph_names[1]).contours[0]) > 80_000
+    assert read == []
+    monkeypatch.setattr(bulk, "SIZE", 1 << 12)
+    assert isinstance(BulkReader(font.path, font._face, 1 << 11).outlines(heads_of(font), font.metrics)[1], Outline)
+    assert read == [font.glyph_names[1]]

@@ -14,8 +14,7 @@ from fontTools.ttLib.tables._g_l_y_f import USE_MY_METRICS, GlyphComponent
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_font
-from glyphspline.readers.opentype.routes import HarfBuzz
-from glyphspline.types import FloatArray
+from glyphspline.types import FloatArray, Head
 from tests.places import FACES, FONTS
 
 
@@ -31,8 +30,8 @@ def from_leftmost(contour: Contour) -> FloatArray:
 def test_both_routes_give_the_same_outline(file: str | Path, face_index: int, location: dict[str, float]) -> None:
     font = open_font(FONTS / file, face_index, location)
     for outline in font.outlines(font.glyph_names):
-        other, advance = font._hb.by_fonttools(outline.name)
-        assert outline.advance == advance
+        other = font._face.by_fonttools(Head(outline.name, outline.gid), font.metrics)
+        assert outline.advance == other.advance
         assert outline.notes == other.notes
         assert len(outline.contours) == len(other.contours)
         for a, b in zip(outline.contours, other.contours, strict=True):
@@ -42,7 +41,7 @@ def test_both_routes_give_the_same_outline(file: str | Path, face_index: int, lo
 
 def test_normalised_coordinates_are_rounded_as_the_format_has_them() -> None:
     font = open_font(FONTS / "variable.ttf", location={"wght": 777})
-    assert font._hb.normalized == {"wght": round(0.754 * 16384) / 16384}
+    assert font._face.normalized == {"wght": round(0.754 * 16384) / 16384}
 
 
 def test_a_component_attached_by_point_matching_is_in_its_place(tmp_path: Path) -> None:
@@ -89,9 +88,10 @@ def test_a_composite_moves_as_the_component_whose_metrics_it_has(tmp_path: Path)
     both.components[0].flags |= USE_MY_METRICS
     font["hmtx"].metrics |= {"square": (700, 117), "both": (700, 93)}
     font.save(tmp_path / "metrics.ttf")
-    outline = open_font(tmp_path / "metrics.ttf").outline("both")
+    opened = open_font(tmp_path / "metrics.ttf")
+    outline = opened.outline("both")
     assert outline.contours[0].points[:, 0].min() == 117
-    other, _ = HarfBuzz(tmp_path / "metrics.ttf", 0, {}).by_fonttools("both")
+    other = opened._face.by_fonttools(Head("both", outline.gid), opened.metrics)
     np.testing.assert_array_equal(other.contours[0].points, outline.contours[0].points)
 
 

@@ -165,10 +165,9 @@ def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
     class Damaged(Font):
         """A font one of whose glyphs cannot be drawn."""
 
-        def outlines(self, glyphs: Any, *, errors: Any = "raise") -> Any:
+        def read(self, heads: Any) -> Any:
             error = GlyphsplineError("broken", font=str(self.path), glyph="B", contour=3)
-            found = super().outlines(glyphs, errors=errors)
-            return [error if getattr(outline, "name", "") == "B" else outline for outline in found]
+            return [error if getattr(outline, "name", "") == "B" else outline for outline in super().read(heads)]
 
     font = open_font(FONTS / "kouzan-gyosho.otf")
     font.__class__ = Damaged
@@ -183,7 +182,7 @@ def test_a_bad_glyph_fails_alone(tmp_path: Path) -> None:
 def opened_as(font: Font) -> Any:
     """Workers of this process find this font where they would open it."""
     patch = pytest.MonkeyPatch()
-    patch.setattr("glyphspline.readers.open_source", lambda *key: font)
+    patch.setattr("glyphspline.readers.open.reopened", lambda *key: font)
 
     class Undo:
         def __enter__(self) -> None: ...

@@ -19,7 +19,7 @@ import glyphspline as gs
 from glyphspline.cli import app
 from glyphspline.curves.integrals import area
 from glyphspline.readers.pens import ContourPen
-from glyphspline.types import Head, rounded_up
+from glyphspline.types import rounded_up
 from scripts.paper.measures import shape
 from tests.places import GYOSHO as FONT
 from tests.topology import path_contours, svg_contours
@@ -102,10 +102,11 @@ def test_bulk_reading_and_the_pen_snap_alike(tmp_path: Path) -> None:
     builder.save(tmp_path / "gap.ttf")
     font = gs.open_font(tmp_path / "gap.ttf", location={"wght": 0.9995})
     bulk = font.outline("A")
-    outline = font._bulk.draw_again(Head("A", 1, (65,)), font.metrics, 1)
-    assert isinstance(outline, gs.Outline)
-    assert len(outline.contours[0]) == len(bulk.contours[0]) == 4
-    assert outline.snapped == pytest.approx(bulk.snapped)
+    pen = ContourPen()
+    font.shaper.draw_glyph_with_pen(1, pen)
+    pen.finish()
+    assert len(pen.contours[0]) == len(bulk.contours[0]) == 4
+    assert pen.snapped == pytest.approx(bulk.snapped)
     assert 1e-4 < bulk.snapped < 1e-3
 
 

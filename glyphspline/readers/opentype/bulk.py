@@ -2,16 +2,16 @@
 
 HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
 2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
-the rules of :class:`~glyphspline.readers.pens.ContourPen`. Unusual glyphs are drawn again with that pen: those too
-large for the buffer through HarfBuzz, and those whose drawing is incomplete through fontTools, which reports what is
-wrong. HarfBuzz leaves out what it cannot read without an error.
+the rules of :class:`~glyphspline.readers.pens.ContourPen`. Glyphs that are too large, or whose drawing is incomplete,
+are drawn again with that pen by fontTools, which reports what is wrong. HarfBuzz leaves out what it cannot read without
+an error.
 """
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping, Sequence
-from functools import cache, cached_property
+from collections.abc import Sequence
+from functools import cache, cached_property, partial
 from itertools import pairwise
 from pathlib import Path
 from threading import Lock
@@ -26,18 +26,21 @@ from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...outlines.segments import keep_lasting
 from ...types import BoolArray, FloatArray, Head, IntArray
-from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, notes_of
-from ..source import OutlineOrError, attempt, opening
-from .routes import HarfBuzz
+from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, notes_of
+from ..source import OutlineOrError, attempt
+from .routes import Face
 
 USED, CAPACITY, FIRST = 0, 1, 2
 """Indices in the buffer: of the count of numbers in use, of the capacity, and of the first operation."""
 
-BUFFER_SIZE = 1 << 18
-"""Capacity of the buffer: 2 MB. The pen reads larger glyphs, of more than some 37,000 cubics."""
+PASS = 1 << 18
+"""Numbers in the buffer after which contours are made of them: 2 MB."""
 
 LONGEST = 7
 """Numbers of the longest operation, a cubic."""
+
+SIZE = PASS + 8 * MAX_SEGMENTS
+"""Capacity of the buffer: a glyph with all the segments allowed fits. Memory that no glyph needs is never touched."""
 
 UNUSUAL, UNCOUNTED = -1, -2
 """In place of a number of contours: fontTools has to read the glyph; the number is unknown."""
@@ -49,40 +52,35 @@ def _drawing(points: int) -> Any:
     return types.void(types.intp, buffer, types.intp, *(types.float32,) * (2 * points), types.intp)
 
 
-# The callbacks write nothing beyond the capacity; a full buffer remains full.
+@compiled
+def _record(buffer: Any, kind: int, coordinates: Any) -> None:
+    """Write an operation into the buffer, nothing beyond the capacity; a full buffer remains full."""
+    used = int(buffer[USED])
+    if used + LONGEST < buffer[CAPACITY]:
+        buffer[used] = kind
+        for k in range(len(coordinates)):
+            buffer[used + 1 + k] = coordinates[k]
+        buffer[USED] = used + 1 + len(coordinates)
+    else:
+        buffer[USED] = buffer[CAPACITY]
+
+
 @callback(_drawing(1))
 def _point(functions: int, buffer: Any, state: int, x: float, y: float, user: int) -> None:
     """A move (user data 1) or a line (2)."""
-    used = int(buffer[0])
-    if used + LONGEST < buffer[1]:
-        buffer[used], buffer[used + 1], buffer[used + 2] = user - 1, x, y
-        buffer[0] = used + 3
-    else:
-        buffer[0] = buffer[1]
+    _record(buffer, user - 1, (x, y))
 
 
 @callback(_drawing(2))
 def _quadratic(functions: int, buffer: Any, state: int, ax: float, ay: float, x: float, y: float, user: int) -> None:
-    used = int(buffer[0])
-    if used + LONGEST < buffer[1]:
-        buffer[used], buffer[used + 1], buffer[used + 2] = 2.0, ax, ay
-        buffer[used + 3], buffer[used + 4] = x, y
-        buffer[0] = used + 5
-    else:
-        buffer[0] = buffer[1]
+    _record(buffer, 2, (ax, ay, x, y))
 
 
 @callback(_drawing(3))
 def _cubic(
     functions: int, buffer: Any, state: int, ax: float, ay: float, bx: float, by: float, x: float, y: float, user: int
 ) -> None:
-    used = int(buffer[0])
-    if used + LONGEST < buffer[1]:
-        buffer[used], buffer[used + 1], buffer[used + 2] = 3.0, ax, ay
-        buffer[used + 3], buffer[used + 4], buffer[used + 5], buffer[used + 6] = bx, by, x, y
-        buffer[0] = used + 7
-    else:
-        buffer[0] = buffer[1]
+    _record(buffer, 3, (ax, ay, bx, by, x, y))
 
 
 def _capsule(address: int | None) -> Any:
@@ -128,9 +126,9 @@ def _contours(
     snapped = np.zeros(count)
     for g in range(count):
         at, stop = places[g], places[g + 1]
-        odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY] or (stop - at) // 3 > MAX_SEGMENTS
+        odd = expected[g] == UNUSUAL or stop >= buffer[CAPACITY]
         c, m, p, left = before[g]
-        first = c + g
+        first, segments = c + g, 0
         offsets[first] = starts[first] = 0
         while at < stop and not odd:
             points[p, 0], points[p, 1] = buffer[at + 1], buffer[at + 2]
@@ -147,7 +145,8 @@ def _contours(
             repeats[m : s + 1] = 0
             more_points, more, distance = keep_lasting(drawn, degrees[m : s + 1], repeats[m : s + 1], COINCIDENT, True)
             snapped[g] = max(snapped[g], distance)
-            odd = more_points < 0
+            segments += s - m
+            odd = more_points < 0 or segments > MAX_SEGMENTS
             if more_points > 0:
                 m, p, c = m + more, p + more_points, c + 1
                 offsets[c + g], starts[c + g] = m - before[g, 1], p - before[g, 2]
@@ -218,6 +217,7 @@ def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
 def load_compiled() -> None:
     """Load the compiled code, which takes some tenths of a second, before a font is opened."""
     _functions()
+    _record(np.zeros(LONGEST), 0, (0.0, 0.0))  # for Python: the callbacks have code of their own
     none = np.empty(0, dtype=np.int64)
     _contours(np.zeros(FIRST), np.array([FIRST]), none)
     _expected(np.frombuffer(bytes(1), dtype=np.uint8), np.zeros(2, dtype=np.int64), none)
@@ -226,30 +226,14 @@ def load_compiled() -> None:
 class BulkReader:
     """Reader of many glyphs of one face at one location; thread-safe.
 
-    It opens faster than the font, so the workers of a batch open it instead.
-
     Args:
-        path: the file. face_index: which face of a collection.
-        location: axis tag to user-space value, within the axes' limits.
-        face: the same face at the location, if it is open. size: of the buffer.
-
-    Raises:
-        FontError: the file cannot be read.
+        path: of the font, for errors. face: the face at its location. size: numbers in the buffer that end a pass.
     """
 
-    def __init__(
-        self,
-        path: Path,
-        face_index: int = 0,
-        location: Mapping[str, float] | Sequence[tuple[str, float]] = (),
-        face: HarfBuzz | None = None,
-        size: int = BUFFER_SIZE,
-    ) -> None:
-        self._path = path
-        with opening(path):
-            self._hb = face or HarfBuzz(path, face_index, dict(location))
-        self._buffer = np.zeros(size)
-        self._buffer[CAPACITY] = size
+    def __init__(self, path: Path, face: Face, size: int = PASS) -> None:
+        self._path, self._face, self._size = path, face, size
+        self._buffer = np.zeros(SIZE)
+        self._buffer[CAPACITY] = SIZE
         self._pointer = _capsule(self._buffer.ctypes.data)
         self._lock = Lock()
 
@@ -259,7 +243,7 @@ class BulkReader:
         Args:
             heads: name, glyph index and code points of each glyph. metrics: of the font at the location.
         """
-        advance = self._hb.font.get_glyph_h_advance
+        advance = self._face.font.get_glyph_h_advance
         found: list[OutlineOrError] = []
         while len(found) < len(heads):
             left = heads[len(found) :]
@@ -271,7 +255,7 @@ class BulkReader:
             glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
             for g, (head, odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
                 if odd:
-                    found.append(self.draw_again(head, metrics, int(expected[g])))
+                    found.append(attempt(self._path, head.name, partial(self._face.by_fonttools, head, metrics)))
                     continue
                 own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
                 contours, notes = Contours(own, repeats[m:n]), notes_of(left_out[a:b].tolist()) if b > a else ()
@@ -284,51 +268,37 @@ class BulkReader:
         return found
 
     def _draw(self, gids: Sequence[int]) -> tuple[IntArray, IntArray]:
-        """Draw glyphs into the buffer until it is full.
+        """Draw glyphs into the buffer until a pass is full.
 
         Returns:
             (k + 1,) where in the buffer each of the k glyphs drawn begins, and the end; (k,) expected numbers of
-            contours. k is at least 1; a single glyph that does not fit ends at the capacity.
+            contours. k is at least 1; a glyph that does not fit ends at the capacity.
         """
         expected = np.full(len(gids), UNCOUNTED, dtype=np.int64)
         if self._records is not None:
             expected = _expected(*self._records, np.array(gids, dtype=np.int64))
-        draw, functions, used = self._hb.font.draw_glyph, _functions(), self._buffer.data
+        draw, functions, used = self._face.font.draw_glyph, _functions(), self._buffer.data
         used[USED] = FIRST
         places: list[float] = [FIRST]
         for gid, count in zip(gids, expected.tolist(), strict=True):
             if count > 0 or count == UNCOUNTED:
                 draw(gid, functions, self._pointer)
-            if used[USED] == used[CAPACITY] and len(places) > 1:
-                break
             places.append(used[USED])
+            if used[USED] > self._size:
+                break
         expected = expected[: len(places) - 1]
-        if not self._hb.has_records:
-            extents = self._hb.font.get_glyph_extents  # none of a faulty char string, which is drawn in part
+        if not self._face.has_records:
+            extents = self._face.font.get_glyph_extents  # none of a faulty char string, which is drawn in part
             expected[[extents(gid) is None for gid in gids[: len(expected)]]] = UNUSUAL
         return np.array(places, dtype=np.int64), expected
 
     @cached_property
     def _records(self) -> tuple[Any, IntArray] | None:
         """The ``glyf`` table and the offsets of its records."""
-        face = self._hb.face
-        if not self._hb.has_records:
+        face = self._face.face
+        if not self._face.has_records:
             return None
         head, loca = face.reference_table("head").data, face.reference_table("loca").data
         kind, size = (">u2", 2) if head[50:52] == b"\0\0" else (">u4", 1)
         offsets = np.frombuffer(loca, kind, count=len(loca) // np.dtype(kind).itemsize).astype(np.int64) * size
         return np.frombuffer(face.reference_table("glyf").data, dtype=np.uint8), offsets
-
-    def draw_again(self, head: Head, metrics: FontMetrics, expected: int) -> OutlineOrError:
-        """Read a glyph with the pen, which checks it and says what is wrong; ``expected`` is its number of contours."""
-
-        def read() -> Outline:
-            pen, advance = ContourPen(), float(self._hb.font.get_glyph_h_advance(head.gid))
-            if expected != UNUSUAL:
-                self._hb.font.draw_glyph_with_pen(head.gid, pen)
-                pen.finish()
-            if expected == UNUSUAL or (expected >= 0 and pen.drawn != expected):
-                pen, advance = self._hb.by_fonttools(head.name)
-            return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
-
-        return attempt(self._path, head.name, read)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -22,7 +22,7 @@ from ...outlines.outline import FontMetrics
 from ...types import Head
 from ..source import Location, OutlineOrError, Source, opening
 from .containers import FORMATS, unpacked
-from .routes import HarfBuzz
+from .routes import Face
 
 if TYPE_CHECKING:
     from .bulk import BulkReader
@@ -47,12 +47,11 @@ class Font(Source):
         family, style: from the name table; by default the file's name and "Regular".
         metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
         glyph_names: all glyphs in glyph index order, made unique where the font repeats a name or has none.
-        num_glyphs: number of glyphs.
         cmap: code point to glyph name, from the best Unicode table; empty if there is none.
     """
 
-    def __init__(self, path: Path, data: bytes, face_index: int, location: Location, named: bool = True) -> None:
-        """Open a face; its glyphs have no names or characters unless ``named``: those of a CJK face take longest."""
+    def __init__(self, path: Path, data: bytes, face_index: int, location: Location) -> None:
+        """Open a face; names and characters of its glyphs, which take longest, are read when they are asked for."""
         if data[:4] not in FORMATS:
             raise FontError("not a TTF, OTF, TTC, WOFF or WOFF2 file")
         self.path, self.face_index, self.format, self._data = path, face_index, FORMATS[data[:4]], data
@@ -92,22 +91,37 @@ class Font(Source):
             self.instances = {name: dict(instance.coordinates) for name, instance in instances if name}
         self.location = self.clamped(location)
         self.metrics = self._default_metrics = metrics_of(tables)
-        self._hb = HarfBuzz(path, face_index, self.location, self._plain)
-        self.shaper = self._hb.font
+        self._face = Face(self._plain, face_index, self.location)
+        self.shaper = self._face.font
         if self.location:
             extents = self.shaper.get_font_extents("ltr")
             self.metrics = replace(self.metrics, ascender=float(extents.ascender), descender=float(extents.descender))
-        if named:
-            order = tables.getGlyphOrder()
+
+    @cached_property
+    def glyph_names(self) -> tuple[str, ...]:  # type: ignore[override]
+        """All glyphs in glyph index order."""
+        with opening(self.path):
+            order = self._tables.getGlyphOrder()
             if not all(map(str.isprintable, order)):  # neither a UFO nor an SVG can have such names
                 taken = set(order)
                 order = [name if name.isprintable() else unused(f"glyph{k:05}", taken) for k, name in enumerate(order)]
-                tables.setGlyphOrder(order)
-            self.glyph_names = tuple(order)
-            self.num_glyphs = len(self.glyph_names)
+                self._tables.setGlyphOrder(order)
+            return tuple(order)
+
+    @cached_property
+    def cmap(self) -> Mapping[int, str]:  # type: ignore[override]
+        """Code point to glyph name."""
+        names, tables = self.gids, self._tables
+        with opening(self.path):
             check_characters(tables.reader["cmap"] if "cmap" in tables else b"")
-            mapped = (tables.getBestCmap() or {}).items()
-            self.cmap = MappingProxyType({code: name for code, name in mapped if name in self.gids})
+            return MappingProxyType(
+                {code: name for code, name in (tables.getBestCmap() or {}).items() if name in names}
+            )
+
+    @property
+    def num_glyphs(self) -> int:
+        """Number of glyphs."""
+        return len(self.glyph_names)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return open_font, (self.path, self.face_index, dict(self.location))
@@ -121,7 +135,7 @@ class Font(Source):
         with opening(self.path):
             cmap = self._tables.reader["cmap"] if "cmap" in self._tables else bytes(4)
             tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
-        return self._hb.face.glyph_count, len(self._hb.face.unicodes) if tables & UNICODE_CMAPS else 0
+        return self._face.face.glyph_count, len(self._face.face.unicodes) if tables & UNICODE_CMAPS else 0
 
     def _bytes(self) -> Iterable[bytes]:
         return (self._data,)
@@ -130,7 +144,8 @@ class Font(Source):
         """A new copy of all tables, to be changed; those of a variable font are at the default and keep the axes."""
         return TTFont(BytesIO(self._plain), fontNumber=self.face_index, recalcTimestamp=False)
 
-    def _read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+    def read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
+        """See :meth:`.Source.read`; names and characters of other glyphs are not needed."""
         return self._bulk.outlines(heads, self.metrics)
 
     def _masters(self, head: Head) -> Masters:
@@ -146,7 +161,7 @@ class Font(Source):
     def _bulk(self) -> BulkReader:
         from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
-        return BulkReader(self.path, self.face_index, self.location, self._hb)
+        return BulkReader(self.path, self._face)
 
 
 def printable(text: str) -> str:
@@ -223,13 +238,13 @@ def open_font(path: str | Path, face_index: int = 0, location: Location = None) 
         >>> font.outline("A")
         <Outline 'A' gid 4 U+0041: 2 contours, 34 segments, advance 515, 1024 units per em>
     """
-    path = Path(path)
-    with opening(path):
-        return Font(path, path.read_bytes(), face_index, location)
+    (font,) = open_faces(path, face_index, location)
+    _ = font.cmap  # and names: what is broken is an error here, not later
+    return font
 
 
 def open_faces(path: str | Path, face_index: int | None = None, location: Location = None) -> Iterator[Font]:
-    """The faces of a font file, or the one that is asked for; names and characters of glyphs are not read.
+    """The faces of a font file, or the one that is asked for; names and characters of glyphs are not read yet.
 
     Raises:
         FontError: as in :func:`open_font`.
@@ -237,6 +252,6 @@ def open_faces(path: str | Path, face_index: int | None = None, location: Locati
     path = Path(path)
     with opening(path):
         data = path.read_bytes()
-        yield (first := Font(path, data, face_index or 0, location, named=False))
+        yield (first := Font(path, data, face_index or 0, location))
         for index in range(1, first.num_faces if face_index is None else 0):
-            yield Font(path, data, index, location, named=False)
+            yield Font(path, data, index, location)

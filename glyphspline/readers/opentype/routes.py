@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from contextlib import suppress
 from functools import cached_property
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import uharfbuzz as hb
@@ -17,20 +16,20 @@ from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import USE_MY_METRICS
 
 from ...errors import GlyphsplineError
+from ...outlines.outline import FontMetrics, Outline
+from ...types import Head
 from ..pens import ContourPen, enter_component
-from .containers import unpacked
 
 MOST_MOVES = 4_000_000
 """Limit of points times variations of a glyph of ``glyf``: real ones have some 50,000, and fontTools lists them all."""
 
 
-class HarfBuzz:
+class Face:
     """A face at a location.
 
     Args:
-        path: the file. face_index: which face of a collection.
+        data: the file's bytes, without compression. face_index: which face of a collection.
         location: axis tag to user-space value, within the axes' limits.
-        plain: the file's bytes without compression, if they are in memory; else HarfBuzz maps the file.
 
     Attributes:
         face, font: HarfBuzz's own objects.
@@ -38,13 +37,9 @@ class HarfBuzz:
         has_records: whether glyphs are records of the ``glyf`` table; char strings otherwise.
     """
 
-    def __init__(self, path: Path, face_index: int, location: Mapping[str, float], plain: bytes | None = None) -> None:
-        self._path, self._face_index = path, face_index
-        if plain is None:
-            with open(path, "rb") as file:
-                plain = unpacked(path.read_bytes()) if file.read(4) in (b"wOFF", b"wOF2") else None
-        self._plain = plain
-        self.face = hb.Face(hb.Blob(plain) if plain else hb.Blob.from_file_path(str(path)), face_index)
+    def __init__(self, data: bytes, face_index: int, location: Mapping[str, float]) -> None:
+        self._data, self._face_index = data, face_index
+        self.face = hb.Face(hb.Blob(data), face_index)
         self.font = hb.Font(self.face)
         self.normalized: dict[str, float] = {}
         if location:
@@ -57,7 +52,7 @@ class HarfBuzz:
 
     @cached_property
     def _tables(self) -> TTFont:
-        return TTFont(BytesIO(self._plain or self._path.read_bytes()), fontNumber=self._face_index, lazy=True)
+        return TTFont(BytesIO(self._data), fontNumber=self._face_index, lazy=True)
 
     @cached_property
     def _glyphs(self) -> Any:
@@ -73,20 +68,22 @@ class HarfBuzz:
                 self._failure = error
         raise self._failure.with_traceback(None) from None
 
-    def by_fonttools(self, name: str) -> tuple[ContourPen, float]:
-        """Draw the contours of a glyph by fontTools; also its advance. fontTools' exceptions pass through.
+    def by_fonttools(self, head: Head, metrics: FontMetrics) -> Outline:
+        """Read a glyph by fontTools, whose exceptions pass through; ``metrics`` are those at the location.
 
         After one the tables are opened again: fontTools keeps tables and glyphs that are read in part, and the next
         reading of the same glyph would not find the fault.
         """
         try:
+            name = self._tables.getGlyphName(head.gid)
             if self.normalized:
                 check_variations(self._tables, name)
             pen = ContourPen(self._glyphs, name)
             glyph = self._glyphs[name]
             glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
             pen.finish()
-            return pen, float(otRound(glyph.width))  # read last: drawing applies the variations of the width
+            advance = float(otRound(glyph.width))  # read last: drawing applies the variations of the width
+            return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
         except Exception:
             self.__dict__.pop("_tables", None)
             self.__dict__.pop("_glyphs", None)

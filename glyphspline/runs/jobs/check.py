@@ -33,7 +33,7 @@ from ...report.findings_page import home_of
 from ...types import FloatArray, Head, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
-from ..schedule import Side, heads_of, readers, side_of, sources, workers
+from ..schedule import Place, heads_of, place_of, sources, workers
 from ..shapes import Shapes
 from ..spec import LIMITS
 
@@ -67,7 +67,7 @@ class CheckJob(Job[Head, Checked]):
         kinds: names of those that are looked for. outer: direction of outer contours; see :attr:`.Source.outer`.
     """
 
-    side: Side
+    place: Place
     thresholds: Thresholds
     kinds: frozenset[str]
     outer: int
@@ -79,10 +79,10 @@ class CheckJob(Job[Head, Checked]):
 
     def read(self, tasks: Sequence[Head]) -> Sequence[Item | Exception]:
         """Outlines of one em together: each drawing has its own."""
-        (read,) = readers(self.side)
+        (source,) = sources(self.place)
         return [
             each if isinstance(each, GlyphsplineError) else _item(each, len(each.arrays.degrees))
-            for each in read(tasks)
+            for each in source.read(tasks)
         ]
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> Checked:
@@ -125,7 +125,7 @@ class AxesJob(CheckJob):
 
     def item(self, task: Head) -> Item | Exception:
         """A glyph in all its masters."""
-        (source,) = sources(self.side.place)
+        (source,) = sources(self.place)
         masters = source.masters(task[0])
         return _item(masters, sum(map(len, masters.contours)))
 
@@ -133,7 +133,7 @@ class AxesJob(CheckJob):
         """As for a font where it is open, at the worst place of each finding."""
         from ...checks.on_axes import on_axes
 
-        return on_axes(glyphs, dict(self.side.place[2]), self.axes, self.steps, self.thresholds, self.outer)
+        return on_axes(glyphs, dict(self.place[2]), self.axes, self.steps, self.thresholds, self.outer)
 
 
 def _item(glyph: Outline | Masters, segments: int) -> Item | Exception:
@@ -259,9 +259,9 @@ def check_font(
     if unknown := [name for name in names if name not in source.gids]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
     tasks = list(heads_of(source, names).values())
-    job = CheckJob(side_of(source), asked.thresholds, asked.kinds, source.outer)
+    job = CheckJob(place_of(source), asked.thresholds, asked.kinds, source.outer)
     if chosen:
-        job = AxesJob(job.side, job.thresholds, job.kinds, job.outer, chosen, asked.steps, asked.joints)
+        job = AxesJob(job.place, job.thresholds, job.kinds, job.outer, chosen, asked.steps, asked.joints)
 
     def glyphs() -> Iterator[GlyphFindings]:
         reported = Shapes()

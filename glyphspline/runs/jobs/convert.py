@@ -41,7 +41,7 @@ from ..folder import (
 )
 from ..result_text import stored
 from ..rows import Rows
-from ..schedule import Side, heads_of, kinds_for, readers, side_of, workers
+from ..schedule import Place, heads_of, kinds_for, place_of, sources, workers
 from ..spec import MAPS, OF_RUNS, PARQUET, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
 from ..summary import NAMED, Summary
 
@@ -56,7 +56,7 @@ SCALE_SAMPLE = 200
 class ConvertJob(Output, Job[Task, list[Done]]):
     """Glyphs converted, drawn and written to files, each with a line of the manifest."""
 
-    side: Side
+    place: Place
 
     budget = 40_000
     """Segments and vertices converted at once: some 40 glyphs of a CJK face."""
@@ -65,8 +65,8 @@ class ConvertJob(Output, Job[Task, list[Done]]):
         """Outlines; one that is too large is an error."""
         from ..worker import items
 
-        (read,) = readers(self.side)
-        return items(read([task.head for task in tasks]), self.spec.options, self.spec.limits)
+        (source,) = sources(self.place)
+        return items(source.read([task.head for task in tasks]), self.spec.options, self.spec.limits)
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """Convert outlines and write their files."""
@@ -93,7 +93,7 @@ class SurveyJob(Job[Task, list[Comb]]):
     Chunks are small, so that a run over few glyphs uses all workers.
     """
 
-    side: Side
+    place: Place
     spec: RunSpec
 
     chunk = 4
@@ -157,7 +157,7 @@ def convert_font(
         with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
             tasks = tasks_of(source, glyphs, spec.names)
             left = [task for task in tasks if task.head.gid not in finished]
-            job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), side=side_of(source))
+            job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
             job = with_scale(job, source, glyphs, tasks, pool)
             for part in recorded(job, left, pool, record, out, observer, rows):
                 for glyph in part.result:
@@ -208,7 +208,7 @@ def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: li
         job = replace(job, curvature_scale=given)
     elif MAPS & set(job.spec.formats):
         chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
-        found = run(SurveyJob(job.side, job.spec), chosen, pool, ordered=True)
+        found = run(SurveyJob(job.place, job.spec), chosen, pool, ordered=True)
         em = source.metrics.units_per_em
         scale = shared_scale((comb for part in found for comb in part.result), em) or 1 / em
         job = replace(job, curvature_scale=float(f"{scale:.6g}"))

@@ -13,7 +13,7 @@ from ...readers import Source
 from ...readers.source import OutlineOrError
 from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
-from ..schedule import Side, heads_of, readers, side_of, workers
+from ..schedule import Place, heads_of, place_of, sources, workers
 from ..spec import LIMITS
 
 
@@ -39,8 +39,8 @@ Found: TypeAlias = list[Difference | Unread]
 class CompareJob(Job[Pair, Found]):
     """Both sources, and the tolerance in units of the old em."""
 
-    old: Side
-    new: Side
+    old: Place
+    new: Place
     tolerance: float
 
     budget = 20_000
@@ -48,8 +48,8 @@ class CompareJob(Job[Pair, Found]):
 
     def read(self, tasks: Sequence[Pair]) -> list[Item | Exception]:
         """The outlines of both glyphs."""
-        old, new = readers(self.old, self.new)
-        return list(map(_item, old([pair.old for pair in tasks]), new([pair.new for pair in tasks])))
+        old, new = sources(self.old, self.new)
+        return list(map(_item, old.read([pair.old for pair in tasks]), new.read([pair.new for pair in tasks])))
 
     def together(self, tasks: Sequence[Pair], contents: Sequence[Any]) -> Found:
         """The differences of a batch."""
@@ -213,7 +213,7 @@ def compare_fonts(
         em * PER_EM if tolerance is None else tolerance, em / new.metrics.units_per_em, glyphs,
         fonts={"old": about(old), "new": about(new)},
     )  # fmt: skip
-    job, total = CompareJob(side_of(old), side_of(new), found.tolerance), len(glyphs.pairs)
+    job, total = CompareJob(place_of(old), place_of(new), found.tolerance), len(glyphs.pairs)
     with workers(jobs if total else 0, LIMITS.seconds, ["comparing"], total, executor=executor) as pool:
         for part in run(job, glyphs.pairs, pool, ordered=True, observer=observer):
             for each in part.result:
