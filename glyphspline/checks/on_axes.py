@@ -17,7 +17,7 @@ from ..types import FloatArray, IntArray
 from .check import measured
 from .finding import Measured
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
-from .kinks import AxisKinks, kinks_along
+from .kinks import AxisKinks, along_from, kinks_along
 from .segments import arc, rounding_turns
 from .turns import joint_controls, turns_of
 
@@ -75,9 +75,8 @@ def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[in
     for a in axes:
         if (masters.regions[:, a, 1] != 0).any():
             axis = masters.axes[a]
-            along = np.tile(base, (steps + 1, 1))
-            along[:, a] = [axis.normalised(float(x)) for x in np.linspace(axis.minimum, axis.maximum, steps + 1)]
-            places.append(along)
+            along = [axis.normalised(float(x)) for x in np.linspace(axis.minimum, axis.maximum, steps + 1)]
+            places.append(along_from(base, a, np.array(along)))
     every = np.concatenate(places)
     _, first = np.unique(every, axis=0, return_index=True)
     found: FloatArray = every[np.sort(first)]
