@@ -12,7 +12,7 @@ one near the crossing, by a share of the tolerance.
 from __future__ import annotations
 
 from collections import Counter
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
@@ -29,58 +29,17 @@ PARTS, MOST_PARTS = 8, 64
 segment is cut at most."""
 
 
-class Changes(NamedTuple):
-    """What changed in C contours, or in V instances of them: then all arrays are (V, C).
+Changes: TypeAlias = IntArray
+"""What changed in C contours, (2, C), or in V instances of them, (2, V, C): first the number of crossings that the
+source does not have, with the contour itself and with others of the glyph, -1 where strands lie on each other in such
+numbers that crossings are not counted; then 1 where the area of a contour that does not cross itself has gone, or
+changed its sign."""
 
-    Attributes:
-        new_crossings: (C,) crossings of the contour that its source does not have, with itself and with others of the
-            glyph; -1 where strands lie on each other in such numbers that crossings are not counted.
-        collapsed: (C,) whether the area of a contour that does not cross itself has gone, or changed its sign.
-    """
 
-    new_crossings: IntArray
-    collapsed: BoolArray
-
-    @property
-    def number(self) -> int:
-        """Number of changes: a crossing of two contours counts twice, and crossings that are not counted as many."""
-        # Crossings that are not counted count as a thousand.
-        return int(np.where(self.new_crossings < 0, 1_000, self.new_crossings).sum() + self.collapsed.sum())
-
-    @property
-    def crosses(self) -> BoolArray:
-        """(C,) whether there are crossings that the source does not have."""
-        return self._of_contours(self.new_crossings > 0)
-
-    @property
-    def any(self) -> BoolArray:
-        """(C,) whether there is a change that a closer fit may undo."""
-        return self._of_contours((self.new_crossings > 0) | self.collapsed)
-
-    @staticmethod
-    def _of_contours(changed: BoolArray) -> BoolArray:
-        """(C,) whether a contour changed in any instance."""
-        found: BoolArray = np.logical_or.reduce(changed.reshape(-1, changed.shape[-1]))
-        return found
-
-    def or_worse(self, other: Changes) -> Changes:
-        """Of each contour what changed the more, here or in other results for the same sources."""
-        uncounted = (self.new_crossings < 0) | (other.new_crossings < 0)
-        most = np.where(uncounted, -1, np.maximum(self.new_crossings, other.new_crossings))
-        return Changes(most, self.collapsed | other.collapsed)
-
-    def copy(self) -> Changes:
-        """The same in arrays of their own."""
-        return Changes(self.new_crossings.copy(), self.collapsed.copy())
-
-    def part(self, first: int, last: int) -> Changes:
-        """Those of the contours from ``first`` up to ``last``, as views."""
-        return Changes(self.new_crossings[..., first:last], self.collapsed[..., first:last])
-
-    def put(self, first: int, last: int, found: Changes) -> None:
-        """Replace those of the contours from ``first`` up to ``last``."""
-        for values, new in zip(self, found, strict=True):
-            values[..., first:last] = new
+def changed(found: Changes) -> BoolArray:
+    """(C,) whether a contour has a change, in any instance, that a closer fit may undo; of ``found[:1]``, crossings."""
+    wrong: BoolArray = (found > 0).reshape(-1, found.shape[-1]).any(axis=0)
+    return wrong
 
 
 def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> Changes:
@@ -104,7 +63,7 @@ def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> 
     collapsed = now * np.sign(before) < 0.25 * np.abs(before)
     for c in np.flatnonzero(collapsed).tolist():
         collapsed[c] = not _crossing_pairs(source.part(c, c + 1), np.array([0, 1]))[0]
-    return Changes(new, collapsed)
+    return np.stack([new, collapsed])
 
 
 def _crossing_pairs(contours: ContourArrays, glyphs: IntArray) -> tuple[Counter[tuple[int, int]], BoolArray]:
