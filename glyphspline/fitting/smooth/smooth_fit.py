@@ -240,17 +240,17 @@ class _Search:
             np.concatenate, zip(*parts, strict=True)
         )
         trial = steps.Trial(*columns)._replace(offsets=offsets_of(counts))
-        again, moved, known = limits > 0, trial.points.copy(), trial
+        again, moved = limits > 0, trial.points.copy()
         for _ in range(fairing.TRIES):
             if len(before) == 0:
                 break
             fairing.fair(
                 self.contours, trial, controls, knots, parameters, held, surplus, limits, again, self.near, moved
             )
-            done = self.run(trial.which, trial.places, trial.offsets, moved, known)
+            done = self.run(trial.which, trial.places, trial.offsets, moved)
             if len(done.pieces) < len(moved):  # vertices fell together
                 break
-            known, starts = done.trial, trial.offsets[:-1]
+            starts = trial.offsets[:-1]
             extrema, _, peaks, _ = fairing.bends(
                 self.contours, trial, done.pieces, np.ones(len(before), dtype=np.bool_), False
             )
@@ -260,11 +260,11 @@ class _Search:
                 self.kept[int(trial.which[n])] = done, n
             again = fairing.lowered(limits, trial.offsets, done.trial.bounds, self.near, peaks, most)
             left = ~good & np.logical_or.reduceat(again, starts).any(axis=1)
-            every = (before, surplus, most, limits, again, moved, controls, knots, parameters, held, *known, *trial)
+            every = (before, surplus, most, limits, again, moved, controls, knots, parameters, held, *trial)
             before, surplus, most, limits, again, moved, controls, knots, parameters, held, *columns = steps.chosen(
                 every, trial.offsets, left
             )
-            known, trial = steps.Trial(*columns[:9]), steps.Trial(*columns[9:])
+            trial = steps.Trial(*columns)
 
     def uneven(self, found: Round, keep: BoolArray) -> list[Any]:
         """What :meth:`fair` begins with, of the contours that are to be faired among some of a round.
@@ -293,15 +293,8 @@ class _Search:
                 self.kept[k] = done, i
         return done
 
-    def run(
-        self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
-        known: steps.Trial = steps.NOT_TRIED,
-    ) -> Round:  # fmt: skip
-        """Interpolate contours through points at their places, or beside them, and measure.
-
-        Args:
-            known: see :func:`.steps.measured`.
-        """
+    def run(self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray) -> Round:
+        """Interpolate contours through points at their places, or beside them, and measure."""
         try:
             held = steps.held_corners(self.contours, which, places, offsets, self.angle, self.hold)
             held = held if held.any() else NONE_HELD
@@ -317,7 +310,7 @@ class _Search:
             return self.run(which, places[kept], offsets_of([len(part) for part in parts]), points[kept])
         pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 10.0**self.options.precision)
         written = written if self.mixes is None else _mixed(self.mixes, pieces)
-        trial = steps.measured(self.instances, which, places, offsets, points, written, self.near, known)
+        trial = steps.measured(self.instances, which, places, offsets, points, written, self.near)
         return Round(trial, found, pieces, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
 
     def passes(self, found: tuple[Round, int]) -> bool:
