@@ -57,7 +57,8 @@ def on_axes(
     along_axes = kinks_along(glyphs, axes, location, chosen, thresholds.corner_angle, turns_only=turns_only)
     smooth = smooth_joints(along_axes)
     kinks = kinks_of(glyphs, location, chosen, along_axes, thresholds)
-    known = np.array([joint in smooth for joint in joints_of(rows)], dtype=np.bool_)
+    joints = zip(rows.glyphs.tolist(), rows.contours.tolist(), rows.segments.tolist(), strict=True)
+    known = np.array([joint in smooth for joint in joints], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & (~np.isin(rows.kinds, OF_SMOOTH) | known)))
     worst = _worst(Measured.joined([kinks, rows]))
     users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
@@ -88,11 +89,6 @@ def instances_of(masters: Masters, at: FloatArray) -> list[Contours]:
     every = end_to_end([(contour.points, contour.degrees) for contour in masters.contours])
     instances = np.tensordot(masters.weights_at(at), every.points.reshape(len(masters), -1, 2), axes=1)
     return [Contours(every._replace(points=p), None if k else masters.repeats) for k, p in enumerate(instances)]
-
-
-def joints_of(rows: Measured) -> list[tuple[int, int, int]]:
-    """Glyph, contour and segment of each row."""
-    return [*zip(rows.glyphs.tolist(), rows.contours.tolist(), rows.segments.tolist(), strict=True)]
 
 
 def smooth_joints(along_axes: Sequence[AxisKinks]) -> set[tuple[int, int, int]]:
