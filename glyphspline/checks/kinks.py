@@ -475,7 +475,7 @@ def _joints_along(
         location[:, axis] = users(at)
         made, none = np.maximum(turn - in_masters.max(axis=1), 0.0), np.zeros(len(joints))
         rows.append(Measured(
-            np.full(len(joints), g), *places.T, np.full(len(joints), KINK),
+            np.full(len(joints), g), places[:, 0], places[:, 1], np.full(len(joints), KINK),
             np.column_stack([none, turn, made, none - 1.0, none + np.nan]),
             first + way[:, None] * (at_ticks[k + 1, joints, 0, 0] - first), location, users(_around(values[on], at)),
         ))  # fmt: skip
@@ -487,7 +487,8 @@ def _joints_along(
         there = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
         on_grid = np.maximum(on_grid, np.nan_to_num(there).max(axis=1, initial=0.0))
     names = [(glyph.name, glyph.gid) for glyph in glyphs]
-    return AxisKinks(axes, axis, names, Measured.joined(rows), at_masters, *np.concatenate(jumps, axis=1), on_grid)
+    largest_jump, jump_at = np.concatenate(jumps, axis=1)
+    return AxisKinks(axes, axis, names, Measured.joined(rows), at_masters, largest_jump, jump_at, on_grid)
 
 
 def along_from(base: FloatArray, axis: int, values: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ location: see :mod:`..curves.pairing`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -203,7 +203,7 @@ class _Fits(NamedTuple):
         from .faithful import Search
         from .topology import changed
 
-        every = range(len(self.numbers))
+        every = list(range(len(self.numbers)))
         search = Search(
             np.array([0, len(every)]), self.fitted(every, SHARP_TRIES[0]),
             compare=lambda a, b, results: changes_at(self.mixes, results),
@@ -219,11 +219,10 @@ class _Fits(NamedTuple):
         ]
         return measured, search.kept
 
-    def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
+    def fitted(self, which: Sequence[int], share: float) -> list[MastersContourResult]:
         """Contours fitted within a share of the tolerance."""
         from ..outlines.segments import all_cubics
 
-        which = [int(c) for c in which]
         if self.fit is not None:
             return self.fit([self.numbers[c] for c in which], share)
         chosen = [arrays.chosen(which) for arrays in self.outlines]
@@ -244,11 +243,10 @@ class _Fits(NamedTuple):
                 curves = fit_smooth_masters(cubics, offsets, self.mixes, self.options, near, first)
                 return [
                     self.result(
-                        source, each.curve, np.ones(len(each.curve), dtype=bool), each.bound, len(source), 0,
-                        each.iterations, each.rate_bound,
+                        source, curve, np.ones(len(curve), dtype=bool), bound, len(source), 0, iterations, rate_bound
                     )
-                    for source, each in zip(sources, curves, strict=True)
-                ]  # fmt: skip
+                    for source, (curve, bound, iterations, rate_bound) in zip(sources, curves, strict=True)
+                ]
             from .sharp.sharp_fit import fit_sharp
 
             fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, near, em)

@@ -38,7 +38,7 @@ changed its sign."""
 
 def changed(found: Changes) -> BoolArray:
     """(C,) whether a contour has a change, in any instance, that a closer fit may undo; of ``found[:1]``, crossings."""
-    wrong: BoolArray = (found > 0).reshape(-1, found.shape[-1]).any(axis=0)
+    wrong: BoolArray = np.logical_or.reduce((found > 0).reshape(-1, found.shape[-1]))
     return wrong
 
 

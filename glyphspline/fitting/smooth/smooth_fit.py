@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -63,28 +63,19 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
     return Fits(len(tries), fit, closer=len(held) + 1, apart=len(tries) - 1)
 
 
-class SmoothCurve(NamedTuple):
-    """A contour's curve in all masters.
-
-    Attributes:
-        bound: certified distance from the source in the whole design space. iterations, rate_bound: of variant 2.
-    """
-
-    curve: MasterContour
-    bound: float
-    iterations: int
-    rate_bound: float
-
-
 def fit_smooth_masters(
     cubics: FloatArray, offsets: IntArray, mixes: FloatArray, options: Options, near: float, first: bool
-) -> list[SmoothCurve]:
+) -> list[tuple[MasterContour, float, int, float]]:
     """Closed C2 curves for the masters of C contours.
 
     Args:
         cubics: (K, m, 4, 2) their segments in each master. offsets: (C + 1,) where each contour begins.
         mixes: (V, K) weights of the masters at the corners of the design space's grid.
         near: the distance allowed, in font units. first: whether this is the contours' first fit.
+
+    Returns:
+        Of each its curve in all masters, the certified distance from the source in the whole design space, and the
+        iterations and the rate bound of variant 2.
 
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
@@ -355,14 +346,14 @@ class _Search:
             solved | distance_columns(gaps, bounds, tolerance),
         )
 
-    def in_masters(self, k: int) -> SmoothCurve:
-        """The curve kept for contour k, in the given direction."""
+    def in_masters(self, k: int) -> tuple[MasterContour, float, int, float]:
+        """The curve kept for contour k, in the given direction; see :func:`fit_smooth_masters`."""
         found, i = self.kept[k]
         cubics, arrays = found.part(found.pieces, i).swapaxes(0, 1), found.found.arrays
         if self.contours.flipped[k]:
             cubics = cubics[:, ::-1, ::-1]
         curve = MasterContour(cubics[:, :, :3].reshape(len(cubics), -1, 2), np.full(cubics.shape[1], 3))
-        return SmoothCurve(curve, float(found.most[i]), int(arrays.whole[i, 2]), float(arrays.rates[i]))
+        return curve, float(found.most[i]), int(arrays.whole[i, 2]), float(arrays.rates[i])
 
     def certificate(self, k: int, tolerance: float) -> tuple[float, float]:
         """Certified bound, and distance seen, of the curve kept for contour k."""
