@@ -175,18 +175,14 @@ def surroundings(
     bounds, outer = np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
     around = np.full(count, -1)
     pieces = np.empty((MOST_HALVINGS + 1, 4, 2))
-    boxes = np.empty((count, 4))
+    boxes = np.full((count, 4), np.nan)
     for c in range(count):
         areas[c] = area(cubics[offsets[c] : offsets[c + 1]])
         if abs(areas[c]) <= least:
             areas[c] = 0.0
-        box = boxes[c]
-        box[0] = box[1] = np.inf
-        box[2] = box[3] = -np.inf
-        for s in range(offsets[c], offsets[c + 1]):
-            for k in range(8):
-                value = cubics[s, k // 2, k % 2]
-                box[k % 2], box[2 + k % 2] = min(box[k % 2], value), max(box[2 + k % 2], value)
+        for k in range(4 if offsets[c] < offsets[c + 1] else 0):
+            own = cubics[offsets[c] : offsets[c + 1], :, k % 2]
+            boxes[c, k] = own.min() if k < 2 else own.max()
     for g in range(len(glyphs) - 1):
         for c in range(glyphs[g], glyphs[g + 1]):
             if areas[c] == 0:

@@ -334,7 +334,7 @@ def joint_turns(masters: Masters, kink: Kink, values: FloatArray) -> FloatArray:
     """(v,) the turn of a kink's joint, in degrees without sign, at (v,) user-space values of its axis."""
     axis = [axis.tag for axis in masters.axes].index(kink.axis)
     along = np.array([masters.axes[axis].normalised(float(value)) for value in values])
-    at = _at(masters.normalised(kink.location), axis, along)
+    at = along_from(masters.normalised(kink.location), axis, along)
     controls = joint_controls(masters.contours[kink.contour])[:, kink.joint]
     turns: FloatArray = np.abs(turns_of(np.tensordot(masters.weights_at(at), controls, axes=1)))
     return turns
@@ -453,53 +453,48 @@ def _joints_along(
     ]  # or no range
     ends = []  # (T, J, 2, 4, 2) the joints of each glyph at its ticks
     for glyph, (controls, _), values in zip(glyphs, smooth, ticks, strict=True):
-        ends.append(np.tensordot(glyph.weights_at(_at(base, axis, values)), controls, axes=1))
-    # A row for each joint and each interval of its glyph; those of a joint are neighbours.
-    start = np.concatenate([np.swapaxes(item[:-1], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
-    end = np.concatenate([np.swapaxes(item[1:], 0, 1).reshape(-1, 2, 4, 2) for item in ends])
-    joints = [len(places) for _, places in smooth]
-    intervals = np.repeat([len(values) - 1 for values in ticks], joints)  # of each joint
-    low = np.concatenate([np.tile(values[:-1], count) for values, count in zip(ticks, joints, strict=True)])
-    high = np.concatenate([np.tile(values[1:], count) for values, count in zip(ticks, joints, strict=True)])
-    em = np.repeat(np.repeat([glyph.metrics.units_per_em for glyph in glyphs], joints), intervals)
-    turns, ways = largest_turns(start, end)
-    jumps, jump_ways = np.zeros((2, len(turns))) if turns_only else largest_jumps(start, end, em)
-    owners, begins = np.repeat(np.arange(len(intervals)), intervals), np.cumsum(intervals) - intervals
-    row, jump_row = (np.lexsort((-values, owners))[begins] for values in (turns, jumps))  # the first largest of each
-    at, jumps_at = low + ways * (high - low), low + jump_ways * (high - low)
-    owners = np.repeat(np.arange(len(glyphs)), joints)
-    between, at_masters = np.empty((len(row), 2)), list[FloatArray]()
+        ends.append(np.tensordot(glyph.weights_at(along_from(base, axis, values)), controls, axes=1))
+    counts = [len(values[1:]) * len(places) for values, (_, places) in zip(ticks, smooth, strict=True)]
+    start, end = (
+        np.concatenate([each[part].reshape(-1, 2, 4, 2) for each in ends]) for part in (np.s_[:-1], np.s_[1:])
+    )
+    em = np.repeat([glyph.metrics.units_per_em for glyph in glyphs], counts)
+    largest_of_jumps = np.zeros((2, len(em))) if turns_only else largest_jumps(start, end, em)
+    largest = np.split(np.stack([*largest_turns(start, end), *largest_of_jumps]), np.cumsum(counts)[:-1], axis=1)
+    rows, at_masters, jumps = [], list[FloatArray](), [np.zeros((2, 0))]
     grid = grid_of(axes[axis])
     on_grid = np.zeros(len(grid))
-    for g, (glyph, values, at_ticks) in enumerate(zip(glyphs, ticks, ends, strict=True)):
-        on = _masters_on(glyph, axis, _at(base, axis, values))
-        at_masters += [np.stack([values[on], of_joint]) for of_joint in np.abs(turns_of(at_ticks[on])).T]
-        between[owners == g] = _around(values[on], at[row][owners == g])
+    of_glyphs = zip(glyphs, ticks, ends, smooth, largest, strict=True)
+    for g, (glyph, values, at_ticks, (_, places), found) in enumerate(of_glyphs):
+        steps, joints = np.diff(values), np.arange(len(places))
+        turn, way, jump, jump_way = found.reshape(4, len(steps), len(joints))
+        k, i = turn.argmax(axis=0), jump.argmax(axis=0)  # the first interval of the largest
+        turn, way, jump, jump_way = turn[k, joints], way[k, joints], jump[i, joints], jump_way[i, joints]
+        at, first = values[k] + way * steps[k], at_ticks[k, joints, 0, 0]
+        on = _masters_on(glyph, axis, along_from(base, axis, values))
+        in_masters = np.abs(turns_of(at_ticks[on])).T
+        at_masters += [np.stack([values[on], of_joint]) for of_joint in in_masters]
+        location = np.tile([each.user(x) for each, x in zip(axes, base.tolist(), strict=True)], (len(joints), 1))
+        location[:, axis] = users(at)
+        made, none = np.maximum(turn - in_masters.max(axis=1), 0.0), np.zeros(len(joints))
+        rows.append(Measured(
+            np.full(len(joints), g), places[:, 0], places[:, 1], np.full(len(joints), KINK),
+            np.column_stack([none, turn, made, none - 1.0, none + np.nan]),
+            first + way[:, None] * (at_ticks[k + 1, joints, 0, 0] - first), location, users(_around(values[on], at)),
+        ))  # fmt: skip
+        jumps.append(np.stack([jump, users(values[i] + jump_way * steps[i])]))
         if turns_only:
             continue
         k = np.searchsorted(values, grid, side="right").clip(1, max(len(values) - 1, 1)) - 1
-        whole = values[k + 1] - values[k]
-        way = ((grid - values[k]) / np.where(whole > 0, whole, 1.0))[:, None, None, None, None]
+        way = ((grid - values[k]) / np.where(steps[k] > 0, steps[k], 1.0))[:, None, None, None, None]
         there = np.abs(turns_of((1 - way) * at_ticks[k] + way * at_ticks[k + 1]))
         on_grid = np.maximum(on_grid, np.nan_to_num(there).max(axis=1, initial=0.0))
-    made = np.maximum(turns[row] - [of_joint.max() for _, of_joint in at_masters], 0.0)
-    locations = np.tile([each.user(x) for each, x in zip(axes, base.tolist(), strict=True)], (len(row), 1))
-    locations[:, axis] = users(at[row])
-    contours, segments = np.concatenate([places for _, places in smooth]).T
-    rows = Measured(
-        owners, contours, segments, np.full(len(row), KINK),
-        np.column_stack([
-            np.zeros(len(row)), turns[row], made, np.full(len(row), -1.0), np.full(len(row), np.nan)
-        ]),
-        start[row, 0, 0] + ways[row, None] * (end - start)[row, 0, 0], locations,
-        users(between),
-    )  # fmt: skip
-    jumps_at = users(jumps_at[jump_row])
     names = [(glyph.name, glyph.gid) for glyph in glyphs]
-    return AxisKinks(axes, axis, names, rows, at_masters, jumps[jump_row], jumps_at, on_grid)
+    largest_jump, jump_at = np.concatenate(jumps, axis=1)
+    return AxisKinks(axes, axis, names, Measured.joined(rows), at_masters, largest_jump, jump_at, on_grid)
 
 
-def _at(base: FloatArray, axis: int, values: FloatArray) -> FloatArray:
+def along_from(base: FloatArray, axis: int, values: FloatArray) -> FloatArray:
     """(v, A) a normalised location with other values (v,) of an axis."""
     at = np.tile(base, (len(values), 1))
     at[:, axis] = values

@@ -17,7 +17,7 @@ from ..types import FloatArray, IntArray
 from .check import measured
 from .finding import Measured
 from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
-from .kinks import AxisKinks, kinks_along
+from .kinks import AxisKinks, along_from, kinks_along
 from .segments import arc, rounding_turns
 from .turns import joint_controls, turns_of
 
@@ -57,7 +57,8 @@ def on_axes(
     along_axes = kinks_along(glyphs, axes, location, chosen, thresholds.corner_angle, turns_only=turns_only)
     smooth = smooth_joints(along_axes)
     kinks = kinks_of(glyphs, location, chosen, along_axes, thresholds)
-    known = np.array([joint in smooth for joint in joints_of(rows)], dtype=np.bool_)
+    joints = zip(rows.glyphs.tolist(), rows.contours.tolist(), rows.segments.tolist(), strict=True)
+    known = np.array([joint in smooth for joint in joints], dtype=np.bool_)
     rows = rows.chosen(np.flatnonzero((rows.kinds != KINK) & (~np.isin(rows.kinds, OF_SMOOTH) | known)))
     worst = _worst(Measured.joined([kinks, rows]))
     users = [[axis.user(x) for axis, x in zip(axes, at, strict=True)] for at in worst.locations.tolist()]
@@ -75,9 +76,8 @@ def places_of(masters: Masters, location: Mapping[str, float], axes: Sequence[in
     for a in axes:
         if (masters.regions[:, a, 1] != 0).any():
             axis = masters.axes[a]
-            along = np.tile(base, (steps + 1, 1))
-            along[:, a] = [axis.normalised(float(x)) for x in np.linspace(axis.minimum, axis.maximum, steps + 1)]
-            places.append(along)
+            along = [axis.normalised(float(x)) for x in np.linspace(axis.minimum, axis.maximum, steps + 1)]
+            places.append(along_from(base, a, np.array(along)))
     every = np.concatenate(places)
     _, first = np.unique(every, axis=0, return_index=True)
     found: FloatArray = every[np.sort(first)]
@@ -89,11 +89,6 @@ def instances_of(masters: Masters, at: FloatArray) -> list[Contours]:
     every = end_to_end([(contour.points, contour.degrees) for contour in masters.contours])
     instances = np.tensordot(masters.weights_at(at), every.points.reshape(len(masters), -1, 2), axes=1)
     return [Contours(every._replace(points=p), None if k else masters.repeats) for k, p in enumerate(instances)]
-
-
-def joints_of(rows: Measured) -> list[tuple[int, int, int]]:
-    """Glyph, contour and segment of each row."""
-    return [*zip(rows.glyphs.tolist(), rows.contours.tolist(), rows.segments.tolist(), strict=True)]
 
 
 def smooth_joints(along_axes: Sequence[AxisKinks]) -> set[tuple[int, int, int]]:

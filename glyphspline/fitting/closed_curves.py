@@ -165,10 +165,7 @@ def through_polygons(
 
 def _leading(offsets: IntArray, counts: IntArray) -> IntArray:
     """Indices of the first ``counts[k]`` entries of each part."""
-    total = int(counts.sum())
-    if total == offsets[-1]:
-        return np.arange(total)
-    return np.arange(total) + np.repeat(offsets[:-1] - offsets_of(counts)[:-1], counts)
+    return np.arange(counts.sum()) + np.repeat(offsets[:-1] - offsets_of(counts)[:-1], counts)
 
 
 def _anchors(places: FloatArray, arc: Interpolation, segments: int) -> FloatArray:

@@ -136,9 +136,9 @@ def _convert_alike(
     tolerance = options.tolerance_for(em)
     given = joined([outline.arrays for outline in glyphs])
     before = offsets_of([len(outline.contours) for outline in glyphs])
-    kept = enclosing(given)
+    kept, owners = enclosing(given), np.repeat(np.arange(len(glyphs)), np.diff(before))
     for index in np.flatnonzero(~kept).tolist():
-        k = int(np.searchsorted(before, index, side="right")) - 1
+        k = owners[index]
         notes[k].append(f"contour {index - before[k]} has fewer than three distinct points and is left out")
     which = np.flatnonzero(kept)
     try:
@@ -148,9 +148,9 @@ def _convert_alike(
     except GlyphsplineError as error:
         k = 0
         if error.contour is not None:
-            index = int(which[error.contour])
-            k = int(np.searchsorted(before, index, side="right")) - 1
-            error.contour = index - int(before[k])
+            index = which[error.contour]
+            k = owners[index]
+            error.contour = int(index - before[k])
         raise error.locate(glyph=glyphs[k].name) from error.__cause__
     if reserve and "deviation_bound" in found.measures:
         from .measures import distance_columns  # imports the compiler

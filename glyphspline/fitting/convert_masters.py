@@ -8,7 +8,7 @@ location: see :mod:`..curves.pairing`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -27,7 +27,6 @@ from .options import Options
 if TYPE_CHECKING:
     from .sharp.font_fit import FontCurve
     from .sharp.sharp_fit import SharpFit
-    from .smooth.smooth_fit import SmoothCurve
     from .topology import Changes
 
 DEFAULTS = Options()
@@ -196,34 +195,34 @@ class _Fits(NamedTuple):
         return self.options.tolerance_for(self.masters.metrics.units_per_em)
 
     def faithful(self) -> tuple[list[MastersContourResult], Changes]:
-        """Results of all contours, and what changed at each corner, (V, C).
+        """Results of all contours, and what changed at each corner, (2, V, C).
 
         Contours that cross or collapse at a corner where their source does not are fitted more closely, as those of
         single outlines are.
         """
         from .faithful import Search
+        from .topology import changed
 
-        every = range(len(self.numbers))
+        every = list(range(len(self.numbers)))
         search = Search(
             np.array([0, len(every)]), self.fitted(every, SHARP_TRIES[0]),
             compare=lambda a, b, results: changes_at(self.mixes, results),
             is_outside=lambda result: not result.within_tolerance,
         )  # fmt: skip
         for share in SHARP_TRIES[1:]:
-            search.attempt(search.found.any, partial(self.fitted, share=share))
+            search.attempt(changed(search.found), partial(self.fitted, share=share))
         new, collapsed = search.kept
         most = [None if (own < 0).any() else int(own.max()) for own in new.T]
         measured = [
-            replace(result, new_crossings=count, collapsed=bool(lost))
-            for result, count, lost in zip(search.best, most, np.any(collapsed, axis=0).tolist(), strict=True)
+            replace(result, new_crossings=count, collapsed=lost)
+            for result, count, lost in zip(search.best, most, collapsed.any(axis=0).tolist(), strict=True)
         ]
         return measured, search.kept
 
-    def fitted(self, which: Iterable[int], share: float) -> list[MastersContourResult]:
+    def fitted(self, which: Sequence[int], share: float) -> list[MastersContourResult]:
         """Contours fitted within a share of the tolerance."""
         from ..outlines.segments import all_cubics
 
-        which = [int(c) for c in which]
         if self.fit is not None:
             return self.fit([self.numbers[c] for c in which], share)
         chosen = [arrays.chosen(which) for arrays in self.outlines]
@@ -234,7 +233,7 @@ class _Fits(NamedTuple):
 
             looks = self.masters.weights_at(self.masters.places())
             found = fit_for_fonts(chosen, self.mixes, looks, self.options, self.tolerance, share, em)
-            return [_stored(source, each, self) for source, each in zip(sources, found, strict=True)]
+            return [self.stored(source, each) for source, each in zip(sources, found, strict=True)]
         cubics, near = np.stack([all_cubics(arrays) for arrays in chosen]), share * self.tolerance
         try:
             if self.options.corners == "smooth":
@@ -242,7 +241,12 @@ class _Fits(NamedTuple):
 
                 offsets, first = chosen[0].offsets, share == SHARP_TRIES[0]
                 curves = fit_smooth_masters(cubics, offsets, self.mixes, self.options, near, first)
-                return [_closed(source, each, self) for source, each in zip(sources, curves, strict=True)]
+                return [
+                    self.result(
+                        source, curve, np.ones(len(curve), dtype=bool), bound, len(source), 0, iterations, rate_bound
+                    )
+                    for source, (curve, bound, iterations, rate_bound) in zip(sources, curves, strict=True)
+                ]
             from .sharp.sharp_fit import fit_sharp
 
             fit = fit_sharp(chosen[0], cubics, self.mixes, self.options, near, em)
@@ -255,6 +259,31 @@ class _Fits(NamedTuple):
             for k, (source, each) in enumerate(zip(sources, in_all, strict=True))
         ]
 
+    def stored(self, source: MasterContour, found: FontCurve) -> MastersContourResult:
+        """The result of a contour as fonts store it."""
+        precision, degrees = self.options.precision, found.curves[0].degrees
+        curve = MasterContour(np.stack([each.rounded(precision).points for each in found.curves]), degrees)
+        first = found.anchors[:-1, 1].astype(np.int64) % len(source)
+        apart = np.abs(curve.cubics() - source.cubics()[:, first]).max(axis=(0, 2, 3))
+        kept = int(((apart < NO_HANDLE) & (degrees > 1)).sum())
+        return self.result(source, curve, found.inner, found.bound, int((source.degrees > 1).sum()), kept)
+
+    def result(
+        self, source: MasterContour, curve: MasterContour, inner: BoolArray, bound: float, curves: int, kept: int,
+        iterations: int | None = None, rate_bound: float | None = None,
+    ) -> MastersContourResult:  # fmt: skip
+        """A contour with a curve, or as it is where the curve is not within the tolerance.
+
+        Args:
+            curves: how many segments of the source count as such that no curve was found for. kept: how many of the
+                source's the curve has.
+        """
+        if not bound <= self.tolerance:
+            curve, inner, bound = source, np.zeros(len(source), dtype=bool), 0.0
+            kept, iterations, rate_bound = curves, None, None
+        regular = is_regular(curve, self.mixes)
+        return MastersContourResult(source, curve, inner, iterations, rate_bound, bound, True, kept, regular)
+
     def remarks(self, results: Sequence[MastersContourResult], found: Changes) -> Iterator[str]:
         """Remarks on contours that are partly the source's, miss the tolerance, or enclose something else."""
         for c, result in enumerate(results):
@@ -263,13 +292,12 @@ class _Fits(NamedTuple):
             if not result.within_tolerance:
                 bound = rounded_up(result.deviation_bound, 3)
                 yield f"contour {c} is certified to {bound:g} units, not to {self.tolerance:g}"
-            new = found.new_crossings[:, c]
+            new, lost = found[..., c]
             if (new > 0).any():
                 more = f"{new.max()} times more than its source"
                 yield f"contour {c} crosses itself or others, {more}, {self.where(np.maximum(new, 0))}"
             elif (new < 0).any():
                 yield f"crossings of contour {c} are not counted: too many strands lie on each other"
-            lost = found.collapsed[:, c].astype(np.int64)
             if lost.any():
                 how = "has lost its area, or runs the other way round than its source,"
                 yield f"contour {c} {how} {self.where(lost)}"
@@ -282,15 +310,14 @@ class _Fits(NamedTuple):
 
 
 def changes_at(mixes: FloatArray, results: Sequence[MastersContourResult]) -> Changes:
-    """What a glyph's C contours enclose otherwise than their sources, with each of (V, K) weights: (V, C)."""
-    from .topology import Changes, changes
+    """What a glyph's C contours enclose otherwise than their sources, with each of (V, K) weights: (2, V, C)."""
+    from .topology import changes
 
     source, written = (
         joined([Contours([each.mixed(weights) for each in contours]).arrays for weights in mixes])
         for contours in ([result.source for result in results], [result.curve for result in results])
     )
-    found = changes(source, written, np.arange(len(mixes) + 1) * len(results))
-    return Changes(found.new_crossings.reshape(len(mixes), -1), found.collapsed.reshape(len(mixes), -1))
+    return changes(source, written, np.arange(len(mixes) + 1) * len(results)).reshape(2, len(mixes), -1)
 
 
 def check_options(options: Options) -> None:
@@ -322,37 +349,6 @@ def _contour_result(
         kept=int(((spans == 1) & (fit.pieces.errors[own] == 0.0)).sum()),
         regular=bool(fit.regular[own].all()),
     )
-
-
-def _closed(source: MasterContour, found: SmoothCurve, fits: _Fits) -> MastersContourResult:
-    """The result of a contour as one closed curve, or as it is where none is within the tolerance."""
-    if found.bound > fits.tolerance:
-        return _unchanged(source, fits, len(source))
-    return MastersContourResult(
-        source, found.curve, np.ones(len(found.curve), dtype=bool), found.iterations, found.rate_bound, found.bound,
-        True, 0, is_regular(found.curve, fits.mixes),
-    )  # fmt: skip
-
-
-def _unchanged(source: MasterContour, fits: _Fits, kept: int) -> MastersContourResult:
-    """A contour as it is; ``kept``: how many of its segments count as such that no curve was found for."""
-    joints = np.zeros(len(source), dtype=bool)
-    return MastersContourResult(source, source, joints, None, None, 0.0, True, kept, is_regular(source, fits.mixes))
-
-
-def _stored(source: MasterContour, found: FontCurve, fits: _Fits) -> MastersContourResult:
-    """The result of a contour as fonts store it; one that is too far on the grid stays the source's, off it."""
-    if found.bound > fits.tolerance:
-        return _unchanged(source, fits, int((source.degrees > 1).sum()))
-    precision, degrees = fits.options.precision, found.curves[0].degrees
-    curve = MasterContour(np.stack([each.rounded(precision).points for each in found.curves]), degrees)
-    cubics, given = curve.cubics(), source.cubics()
-    first = found.anchors[:-1, 1].astype(np.int64) % len(source)
-    same = (np.abs(cubics - given[:, first]).max(axis=(0, 2, 3)) < NO_HANDLE) & (degrees > 1)
-    return MastersContourResult(
-        source, curve, found.inner, iterations=None, rate_bound=None, deviation_bound=found.bound,
-        within_tolerance=found.bound <= fits.tolerance, kept=int(same.sum()), regular=is_regular(curve, fits.mixes),
-    )  # fmt: skip
 
 
 def is_regular(curve: MasterContour, mixes: FloatArray) -> bool:

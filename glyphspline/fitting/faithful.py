@@ -18,7 +18,7 @@ from .ladders import APART
 from .measures import distance_columns, with_geometry
 from .options import Options
 from .results import ConvertedContours, assembled, not_fitted
-from .topology import Changes, changes, drawn_apart
+from .topology import Changes, changed, changes, drawn_apart
 
 
 class Fits(NamedTuple):
@@ -82,14 +82,17 @@ class Search(Generic[Result]):
             self.tried[c] = result
         for a, b in self.ranges(which):
             tried, found = self.tried[a:b], self.compare(a, b, self.tried[a:b])
-            self.found.put(a, b, found)
-            if self._rank(tried, found) < self._rank(self.best[a:b], self.kept.part(a, b)):
+            self.found[..., a:b] = found
+            if self._rank(tried, found) < self._rank(self.best[a:b], self.kept[..., a:b]):
                 self.best[a:b] = tried
-                self.kept.put(a, b, found)
+                self.kept[..., a:b] = found
 
     def _rank(self, results: Sequence[Result], found: Changes) -> tuple[int, int]:
-        """Lower is better: the number of results outside the tolerance, then of changes."""
-        return sum(map(self.is_outside, results)), found.number
+        """Lower is better: the number of results outside the tolerance, then of changes.
+
+        A crossing of two contours counts twice; crossings that are not counted count as a thousand.
+        """
+        return sum(map(self.is_outside, results)), int(np.where(found < 0, 1_000, found).sum())
 
     def go_back(self) -> None:
         """Go on from the best results."""
@@ -126,7 +129,8 @@ def faithful(
         found = changes(source, written, own)
         # Stretches that stay as they are in the source keep their decimals in fonts.
         if options.is_for_fonts and not np.array_equal(made.points, written.points):
-            found = found.or_worse(changes(source, made, own))
+            other = changes(source, made, own)  # what changed the more counts
+            found = np.where(np.minimum(found, other) < 0, -1, np.maximum(found, other))
         return found
 
     def is_outside(result: Part) -> bool:
@@ -156,28 +160,28 @@ def faithful(
         return _parts(replace(found, source=contours.chosen(which), measures=measures))
 
     search = Search(glyphs, _parts(fits.fit(contours, 0)), compare, is_outside)
-    if search.found.number:
+    if search.found.any():
         touching = _touching(contours, search) if fits.apart else np.zeros(len(search.tried), dtype=np.bool_)
         for turn in range(1, fits.tries):
-            search.attempt(search.found.any & ~(touching & (turn >= fits.closer)), partial(closer, turn))
+            search.attempt(changed(search.found) & ~(touching & (turn >= fits.closer)), partial(closer, turn))
             near = list(search.tried)
             for share in APART if turn == fits.apart else ():
-                search.attempt(search.found.crosses, partial(apart, near, share))
+                search.attempt(changed(search.found[:1]), partial(apart, near, share))
     own_best, instead = list(search.best), fits.instead
     if instead is not None:
         for turn in range(instead.tries):
             search.go_back()
-            search.attempt(search.kept.crosses, partial(closer, turn, of=instead))
+            search.attempt(changed(search.kept[:1]), partial(closer, turn, of=instead))
     fits_best = list(search.best)
-    wrong = (search.kept.collapsed & fits.keeps_collapsed) | (search.kept.crosses & fits.keeps_crossing)
-    if instead and instead.keeps_crossing:
-        wrong |= search.kept.crosses
+    crosses, collapsed = search.kept > 0
+    keeps_crossing = fits.keeps_crossing or (instead is not None and instead.keeps_crossing)
+    wrong = (collapsed & fits.keeps_collapsed) | (crosses & keeps_crossing)
     search.go_back()
     search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
     result = assembled(search.best)
     columns = {
-        "new_crossings": [None if count < 0 else count for count in search.kept.new_crossings.tolist()],
-        "collapsed": search.kept.collapsed.tolist(),
+        "new_crossings": [None if count < 0 else count for count in search.kept[0].tolist()],
+        "collapsed": (search.kept[1] > 0).tolist(),
         "corners_kept": [new is not old for new, old in zip(fits_best, own_best, strict=True)],
         "source_kept": [new is not old for new, old in zip(search.best, fits_best, strict=True)],
     }
@@ -191,7 +195,7 @@ def _parts(found: ConvertedContours) -> list[Part]:
 def _touching(contours: ContourArrays, search: Search[Part]) -> BoolArray:
     """(C,) whether a contour that crosses touches itself or others in the source."""
     found = np.zeros(len(search.tried), dtype=np.bool_)
-    for a, b in search.ranges(np.flatnonzero(search.found.crosses).tolist()):
+    for a, b in search.ranges(np.flatnonzero(search.found[0] > 0).tolist()):
         source = contours.part(a, b)
         met, _ = meetings(all_cubics(source), source.offsets, np.array([0, b - a]))
         found[a + met[~np.isnan(met[:, 4]), :2].astype(np.int64)] = True

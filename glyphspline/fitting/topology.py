@@ -12,7 +12,7 @@ one near the crossing, by a share of the tolerance.
 from __future__ import annotations
 
 from collections import Counter
-from typing import NamedTuple
+from typing import TypeAlias
 
 import numpy as np
 
@@ -29,58 +29,17 @@ PARTS, MOST_PARTS = 8, 64
 segment is cut at most."""
 
 
-class Changes(NamedTuple):
-    """What changed in C contours, or in V instances of them: then all arrays are (V, C).
+Changes: TypeAlias = IntArray
+"""What changed in C contours, (2, C), or in V instances of them, (2, V, C): first the number of crossings that the
+source does not have, with the contour itself and with others of the glyph, -1 where strands lie on each other in such
+numbers that crossings are not counted; then 1 where the area of a contour that does not cross itself has gone, or
+changed its sign."""
 
-    Attributes:
-        new_crossings: (C,) crossings of the contour that its source does not have, with itself and with others of the
-            glyph; -1 where strands lie on each other in such numbers that crossings are not counted.
-        collapsed: (C,) whether the area of a contour that does not cross itself has gone, or changed its sign.
-    """
 
-    new_crossings: IntArray
-    collapsed: BoolArray
-
-    @property
-    def number(self) -> int:
-        """Number of changes: a crossing of two contours counts twice, and crossings that are not counted as many."""
-        # Crossings that are not counted count as a thousand.
-        return int(np.where(self.new_crossings < 0, 1_000, self.new_crossings).sum() + self.collapsed.sum())
-
-    @property
-    def crosses(self) -> BoolArray:
-        """(C,) whether there are crossings that the source does not have."""
-        return self._of_contours(self.new_crossings > 0)
-
-    @property
-    def any(self) -> BoolArray:
-        """(C,) whether there is a change that a closer fit may undo."""
-        return self._of_contours((self.new_crossings > 0) | self.collapsed)
-
-    @staticmethod
-    def _of_contours(changed: BoolArray) -> BoolArray:
-        """(C,) whether a contour changed in any instance."""
-        found: BoolArray = np.logical_or.reduce(changed.reshape(-1, changed.shape[-1]))
-        return found
-
-    def or_worse(self, other: Changes) -> Changes:
-        """Of each contour what changed the more, here or in other results for the same sources."""
-        uncounted = (self.new_crossings < 0) | (other.new_crossings < 0)
-        most = np.where(uncounted, -1, np.maximum(self.new_crossings, other.new_crossings))
-        return Changes(most, self.collapsed | other.collapsed)
-
-    def copy(self) -> Changes:
-        """The same in arrays of their own."""
-        return Changes(self.new_crossings.copy(), self.collapsed.copy())
-
-    def part(self, first: int, last: int) -> Changes:
-        """Those of the contours from ``first`` up to ``last``, as views."""
-        return Changes(self.new_crossings[..., first:last], self.collapsed[..., first:last])
-
-    def put(self, first: int, last: int, found: Changes) -> None:
-        """Replace those of the contours from ``first`` up to ``last``."""
-        for values, new in zip(self, found, strict=True):
-            values[..., first:last] = new
+def changed(found: Changes) -> BoolArray:
+    """(C,) whether a contour has a change, in any instance, that a closer fit may undo; of ``found[:1]``, crossings."""
+    wrong: BoolArray = np.logical_or.reduce((found > 0).reshape(-1, found.shape[-1]))
+    return wrong
 
 
 def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> Changes:
@@ -104,7 +63,7 @@ def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> 
     collapsed = now * np.sign(before) < 0.25 * np.abs(before)
     for c in np.flatnonzero(collapsed).tolist():
         collapsed[c] = not _crossing_pairs(source.part(c, c + 1), np.array([0, 1]))[0]
-    return Changes(new, collapsed)
+    return np.stack([new, collapsed])
 
 
 def _crossing_pairs(contours: ContourArrays, glyphs: IntArray) -> tuple[Counter[tuple[int, int]], BoolArray]:
@@ -130,18 +89,17 @@ def drawn_apart(source: ContourArrays, written: ContourArrays, shift: float, tol
         own, other = strands[int(c)], strands[int(d)]
         segment = written.offsets[int(c)] + int(a)
         point = evaluate(results[segment : segment + 1], np.array([a % 1]))[0]
-        one, two = own.nearest(point), other.nearest(point)
-        if own is other:
-            one, two = own.two_nearest(point, reach)
-        v = own.middle(one, reach) - other.middle(two, reach)
-        moves[int(c)].append((one, own.away(one, v, reach)))
-        moves[int(d)].append((two, other.away(two, -v, reach)))
-    cubics = [strand.moved(each, reach, shift) for strand, each in zip(strands, moves, strict=True)]
+        one = own.nearest(point)
+        two = other.nearest(point, one if own is other else None)
+        v = own.middle(one) - other.middle(two)
+        moves[int(c)].append((one, own.away(one, v)))
+        moves[int(d)].append((two, other.away(two, -v)))
+    cubics = [strand.moved(each, shift) for strand, each in zip(strands, moves, strict=True)]
     return cubic_contours(np.concatenate(cubics), offsets_of([len(part) for part in cubics]))
 
 
 class _Strand:
-    """A contour cut into short pieces, by the length along it."""
+    """A contour cut into short pieces, by the length along it; it steps back over ``reach`` to each side."""
 
     def __init__(self, cubics: FloatArray, reach: float) -> None:
         legs = np.hypot(*np.moveaxis(np.diff(cubics, axis=1), 2, 0)).sum(axis=1)
@@ -151,44 +109,40 @@ class _Strand:
         ends = np.concatenate([[0.0], np.cumsum(chords)])
         self.places, self.total = ends[:-1], ends[-1]  # of all control points but the last of each piece
         self.points = np.einsum("kt,mkc->mtc", bernstein(3)[:, :3], self.pieces).reshape(-1, 2)
-        self.outward = np.sign(area(cubics))
+        self.outward, self.reach = np.sign(area(cubics)), reach
 
     def way(self, place: float) -> FloatArray:
         """Distance along the contour from a place to all points."""
         away: FloatArray = np.abs((self.places - place + self.total / 2) % self.total - self.total / 2)
         return away
 
-    def nearest(self, point: FloatArray) -> float:
-        """Where the contour is nearest to a point."""
-        return float(self.places[np.hypot(*(self.points - point).T).argmin()])
-
-    def two_nearest(self, point: FloatArray, reach: float) -> tuple[float, float]:
-        """Where it is nearest, and where another strand of it is."""
-        first = self.nearest(point)
+    def nearest(self, point: FloatArray, beside: float | None = None) -> float:
+        """Where the contour is nearest to a point; or where another strand of it is than that at a place."""
         distances = np.hypot(*(self.points - point).T)
-        distances[self.way(first) < min(reach, self.total) / 8] = np.inf
-        return first, float(self.places[distances.argmin()])
+        if beside is not None:
+            distances[self.way(beside) < min(self.reach, self.total) / 8] = np.inf
+        return float(self.places[distances.argmin()])
 
-    def middle(self, place: float, reach: float) -> FloatArray:
+    def middle(self, place: float) -> FloatArray:
         """The mean of the points around a place."""
-        mean: FloatArray = self.points[self.way(place) <= reach / 2].mean(axis=0)
+        mean: FloatArray = self.points[self.way(place) <= self.reach / 2].mean(axis=0)
         return mean
 
-    def away(self, place: float, v: FloatArray, reach: float) -> FloatArray:
+    def away(self, place: float, v: FloatArray) -> FloatArray:
         """Unit vector by which the contour steps back at a place, if the other strand lies opposite to v."""
         size = float(np.hypot(*v))
-        if size > reach / 20:
+        if size > self.reach / 20:
             return v / size
         k = int(self.way(place).argmin())
         tangent = self.points[(k + 1) % len(self.points)] - self.points[k - 1]
         normal = np.array([tangent[1], -tangent[0]]) / max(float(np.hypot(*tangent)), 1e-300) * self.outward
-        return normal if normal @ v >= -1e-9 * reach else -normal
+        return normal if normal @ v >= -1e-9 * self.reach else -normal
 
-    def moved(self, moves: list[tuple[float, FloatArray]], reach: float, shift: float) -> FloatArray:
+    def moved(self, moves: list[tuple[float, FloatArray]], shift: float) -> FloatArray:
         """The pieces, stepped back at some places."""
         if not moves:
             return self.pieces
-        weights = np.stack([np.maximum(1 - (self.way(place) / reach) ** 2, 0) ** 2 for place, _ in moves])
+        weights = np.stack([np.maximum(1 - (self.way(place) / self.reach) ** 2, 0) ** 2 for place, _ in moves])
         steps = weights.T @ np.array([direction for _, direction in moves])
         steps *= shift / np.maximum(np.hypot(*steps.T), 1)[:, None]
         points = self.pieces[:, :3].reshape(-1, 2) + steps

@@ -158,11 +158,9 @@ def fair(
             if not again[a:b, v].any():
                 continue
             outline, _ = in_master(contours, trial.which[i], v)
-            P, normals, least = controls[a:b, 2 * v : 2 * v + 2].copy(), np.zeros((n, 2)), np.zeros(n)
+            P, normals = controls[a:b, 2 * v : 2 * v + 2].copy(), np.zeros((n, 2))
             points, moving = moved[a:b, 2 * v : 2 * v + 2].copy(), np.zeros(n, dtype=np.bool_)
-            for j in range(n):
-                if again[a + j, v]:
-                    least[j] = limits[a + j, v]
+            least = np.where(again[a:b, v], limits[a:b, v], 0.0)
             for j in range(n):
                 if again[a + j, v] or again[a + (j - 1) % n, v]:
                     points[j] = trial.points[a + j, 2 * v : 2 * v + 2]

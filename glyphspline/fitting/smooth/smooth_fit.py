@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -63,28 +63,19 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
     return Fits(len(tries), fit, closer=len(held) + 1, apart=len(tries) - 1)
 
 
-class SmoothCurve(NamedTuple):
-    """A contour's curve in all masters.
-
-    Attributes:
-        bound: certified distance from the source in the whole design space. iterations, rate_bound: of variant 2.
-    """
-
-    curve: MasterContour
-    bound: float
-    iterations: int
-    rate_bound: float
-
-
 def fit_smooth_masters(
     cubics: FloatArray, offsets: IntArray, mixes: FloatArray, options: Options, near: float, first: bool
-) -> list[SmoothCurve]:
+) -> list[tuple[MasterContour, float, int, float]]:
     """Closed C2 curves for the masters of C contours.
 
     Args:
         cubics: (K, m, 4, 2) their segments in each master. offsets: (C + 1,) where each contour begins.
         mixes: (V, K) weights of the masters at the corners of the design space's grid.
         near: the distance allowed, in font units. first: whether this is the contours' first fit.
+
+    Returns:
+        Of each its curve in all masters, the certified distance from the source in the whole design space, and the
+        iterations and the rate bound of variant 2.
 
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
@@ -240,17 +231,17 @@ class _Search:
             np.concatenate, zip(*parts, strict=True)
         )
         trial = steps.Trial(*columns)._replace(offsets=offsets_of(counts))
-        again, moved, known = limits > 0, trial.points.copy(), trial
+        again, moved = limits > 0, trial.points.copy()
         for _ in range(fairing.TRIES):
             if len(before) == 0:
                 break
             fairing.fair(
                 self.contours, trial, controls, knots, parameters, held, surplus, limits, again, self.near, moved
             )
-            done = self.run(trial.which, trial.places, trial.offsets, moved, known)
+            done = self.run(trial.which, trial.places, trial.offsets, moved)
             if len(done.pieces) < len(moved):  # vertices fell together
                 break
-            known, starts = done.trial, trial.offsets[:-1]
+            starts = trial.offsets[:-1]
             extrema, _, peaks, _ = fairing.bends(
                 self.contours, trial, done.pieces, np.ones(len(before), dtype=np.bool_), False
             )
@@ -260,11 +251,11 @@ class _Search:
                 self.kept[int(trial.which[n])] = done, n
             again = fairing.lowered(limits, trial.offsets, done.trial.bounds, self.near, peaks, most)
             left = ~good & np.logical_or.reduceat(again, starts).any(axis=1)
-            every = (before, surplus, most, limits, again, moved, controls, knots, parameters, held, *known, *trial)
+            every = (before, surplus, most, limits, again, moved, controls, knots, parameters, held, *trial)
             before, surplus, most, limits, again, moved, controls, knots, parameters, held, *columns = steps.chosen(
                 every, trial.offsets, left
             )
-            known, trial = steps.Trial(*columns[:9]), steps.Trial(*columns[9:])
+            trial = steps.Trial(*columns)
 
     def uneven(self, found: Round, keep: BoolArray) -> list[Any]:
         """What :meth:`fair` begins with, of the contours that are to be faired among some of a round.
@@ -293,15 +284,8 @@ class _Search:
                 self.kept[k] = done, i
         return done
 
-    def run(
-        self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
-        known: steps.Trial = steps.NOT_TRIED,
-    ) -> Round:  # fmt: skip
-        """Interpolate contours through points at their places, or beside them, and measure.
-
-        Args:
-            known: see :func:`.steps.measured`.
-        """
+    def run(self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray) -> Round:
+        """Interpolate contours through points at their places, or beside them, and measure."""
         try:
             held = steps.held_corners(self.contours, which, places, offsets, self.angle, self.hold)
             held = held if held.any() else NONE_HELD
@@ -317,7 +301,7 @@ class _Search:
             return self.run(which, places[kept], offsets_of([len(part) for part in parts]), points[kept])
         pieces, written = beziers(found.arrays.controls, found.arrays.knots, offsets, 10.0**self.options.precision)
         written = written if self.mixes is None else _mixed(self.mixes, pieces)
-        trial = steps.measured(self.instances, which, places, offsets, points, written, self.near, known)
+        trial = steps.measured(self.instances, which, places, offsets, points, written, self.near)
         return Round(trial, found, pieces, held, np.maximum.reduceat(trial.bounds, offsets[:-1]))
 
     def passes(self, found: tuple[Round, int]) -> bool:
@@ -362,14 +346,14 @@ class _Search:
             solved | distance_columns(gaps, bounds, tolerance),
         )
 
-    def in_masters(self, k: int) -> SmoothCurve:
-        """The curve kept for contour k, in the given direction."""
+    def in_masters(self, k: int) -> tuple[MasterContour, float, int, float]:
+        """The curve kept for contour k, in the given direction; see :func:`fit_smooth_masters`."""
         found, i = self.kept[k]
         cubics, arrays = found.part(found.pieces, i).swapaxes(0, 1), found.found.arrays
         if self.contours.flipped[k]:
             cubics = cubics[:, ::-1, ::-1]
         curve = MasterContour(cubics[:, :, :3].reshape(len(cubics), -1, 2), np.full(cubics.shape[1], 3))
-        return SmoothCurve(curve, float(found.most[i]), int(arrays.whole[i, 2]), float(arrays.rates[i]))
+        return curve, float(found.most[i]), int(arrays.whole[i, 2]), float(arrays.rates[i])
 
     def certificate(self, k: int, tolerance: float) -> tuple[float, float]:
         """Certified bound, and distance seen, of the curve kept for contour k."""

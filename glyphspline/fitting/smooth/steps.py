@@ -104,17 +104,6 @@ class Trial(NamedTuple):
     ends: FloatArray
 
 
-NOT_TRIED = Trial(
-    np.empty(0, np.int64),
-    np.empty(0),
-    np.empty(0, np.int64),
-    np.empty((0, 2)),
-    np.empty((0, 1, 4, 2)),
-    *np.empty((4, 0)),
-)
-"""No polygons."""
-
-
 def chosen(columns: Sequence[Any], offsets: IntArray, keep: BoolArray) -> list[Any]:
     """Some parts of ragged arrays: offsets like these, or arrays with a row a part, a row a vertex, or one more a part.
 
@@ -129,7 +118,7 @@ def chosen(columns: Sequence[Any], offsets: IntArray, keep: BoolArray) -> list[A
 @compiled
 def measured(
     contours: CanonicalContours, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray,
-    pieces: FloatArray, near: float, known: Trial,
+    pieces: FloatArray, near: float,
 ) -> Trial:  # fmt: skip
     """Measure closed curves with vertices at ``places`` of their contours, only as sharply as the search needs.
 
@@ -137,13 +126,8 @@ def measured(
 
     Args:
         contours: in V instances. pieces: (n, V, 4, 2) the curves as they are written. near: the distance allowed.
-        known: a trial with vertices at the same places, of which the spans that are the same are not measured again;
-            or one without any.
     """
     n, V, arc = len(places), len(contours.cubics) // len(contours.turns), np.empty(0)
-    same = np.zeros(n, dtype=np.bool_)
-    for j in range(len(known.pieces)):
-        same[j] = (pieces[j] == known.pieces[j]).all()
     if V > 1:
         arc = np.array([-np.inf, np.inf, -np.inf, np.inf])
     work, marks, found = room_for(V)
@@ -152,15 +136,9 @@ def measured(
         a, b = offsets[i], offsets[i + 1]
         outline, spans = chain_of(contours, which[i]), pieces[a:b].reshape((-1, 4, 2))
         begins, rounding = ends[a + i : b + i + 1], ROUNDING * max(extent(spans), extent(outline))
-        for j in range(b - a):
-            if same[a + j]:
-                begins[j] = known.ends[a + i + j]
-        near_places(V, outline, places[a:b], spans, same[a:b], True, 0.0, 0.0, begins)
+        near_places(V, outline, places[a:b], spans, np.zeros(b - a, dtype=np.bool_), True, 0.0, 0.0, begins)
         begins[b - a] = begins[0] + len(outline) // V
         for j in range(b - a):
-            if same[a + j]:
-                bounds[a + j], gaps[a + j], worst[a + j] = known.bounds[a + j], known.gaps[a + j], known.worst[a + j]
-                continue
             y, y_end = begins[j], begins[j + 1]
             found[0], found[1], found[2] = 0.0, 0.0, (y + y_end) / 2
             pair_span(
