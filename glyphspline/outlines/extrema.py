@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..curves.bezier import evaluate, roots_inside, split
+from ..curves.fairness import swings
 from ..types import FloatArray
 from .outline import Contour
 
@@ -81,15 +82,9 @@ def peaks(values: Sequence[float], height: float) -> list[int]:
 
     Only those between which the sequence rises and falls by ``height`` or more.
     """
-    if not values or max(values) - min(values) < height:
+    n = len(values)
+    if n == 0:
         return []
-    first = best = max(range(len(values)), key=values.__getitem__)
-    chosen, sign = [first], -1
-    for i in (*range(first + 1, len(values)), *range(first + 1)):
-        beyond = sign * (values[i] - values[best])
-        if beyond > 0:
-            best = i
-        elif -beyond >= height:
-            chosen.append(best)
-            best, sign = i, -sign
-    return chosen
+    first, found = int(np.argmax(values)), np.empty(n + 1, dtype=np.int64)
+    count = swings(np.array(values), n, first, first + n + 1, 1.0, 0.0, height, found)
+    return [i % n for i in found[:count].tolist()]
