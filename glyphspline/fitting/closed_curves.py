@@ -14,7 +14,7 @@ from ..interpolation.api import interpolate_batch
 from ..interpolation.batch import NONE_HELD
 from ..interpolation.driver import interpolate_any_degree
 from ..interpolation.kernels.driver import distance
-from ..interpolation.method import Fallback, Method, method_of
+from ..interpolation.method import Fallback, Method
 from ..interpolation.polygon import explain
 from ..interpolation.result import BatchedInterpolation, Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
@@ -35,9 +35,9 @@ CERTAIN_RATIO = 6.0
 
 def method_for(options: Options, fallback: Fallback) -> Method:
     """How a glyph's options interpolate closed polygons, with this fallback."""
-    return method_of(
-        options.variant, 3, options.margin, "chord", fallback, options.solver_tolerance, options.max_iterations, True,
-        "iterate", False,
+    return Method(
+        options.variant, margin=options.margin, fallback=fallback, residual_tolerance=options.solver_tolerance,
+        max_iterations=options.max_iterations,
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import BoolArray, FloatArray, IntArray
-from .batch import NONE_HELD, filled, over_threads, run_batch
+from .batch import NONE_HELD, over_threads, run_batch
 from .driver import interpolate_any_degree, interpolate_any_vertex, solved
 from .method import Fallback, Finish, Method, Parametrisation, Tangents, method_of
 from .polygon import as_points, as_tangents, explain
@@ -278,11 +278,11 @@ def interpolate_batch(
         threads: number of threads; None for one a core. Results do not depend on it.
     """
     count, closed = len(offsets) - 1, method.closed
-    peak_shares = filled(count, method.peak_share)
+    peak_shares = np.full(count, method.peak_share)
     if by_knot is not None:
         peak_shares[by_knot] = 0.0
     if residual_tolerances is None:
-        tolerances = filled(count, np.nan if method.residual_tolerance is None else method.residual_tolerance)
+        tolerances = np.full(count, np.nan if method.residual_tolerance is None else method.residual_tolerance)
     else:
         tolerances = residual_tolerances.copy()
     if not method.stepwise:

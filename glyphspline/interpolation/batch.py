@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -63,21 +63,12 @@ def run_batch(
     return BatchedInterpolation(offsets, closed, tolerances, joined, found)
 
 
-def filled(count: int, value: float) -> FloatArray:
-    """An array of one value, in a third of the time of ``numpy.full``."""
-    array = np.empty(count)
-    array.fill(value)
-    return array
-
-
 def _memory(offsets: IntArray, first: int, stop: int, d: int) -> FloatArray:
     """Memory for the blocks of the largest polygon.
 
     NumPy asks for huge pages, which compiled code does not: passes over 60,000 vertices take a fifth less time.
     """
-    most = int(offsets[stop] - offsets[first])
-    if stop > first + 1:
-        most = int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max())
+    most = int(np.diff(offsets[first : stop + 1]).max())
     driver = _driver()
     return np.empty(-(-max(most, 1) // driver.LANES) * (driver.BLOCK + 3 * driver.STRIDE * (d + d % 2)))
 
@@ -112,29 +103,9 @@ def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
 
 
 def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int | None = None) -> list[Any]:
-    """``work`` of each item, in order, on several threads; ``work`` should release the interpreter's lock.
-
-    The calling thread works too. Each thread takes the next item when it has finished one.
-    """
-    helpers = min(_threads(threads), len(items)) - 1 if len(items) > 1 else 0
-    if helpers < 1:
-        return [work(item) for item in items]
-    results: list[Any] = [None] * len(items)
-    left = iter(range(len(items)))
-
-    def take() -> None:
-        for i in left:
-            results[i] = work(items[i])
-
-    running = [_pool(_threads(threads)).submit(take) for _ in range(helpers)]
-    try:
-        take()
-    finally:
-        wait([helper for helper in running if not helper.cancel()])
-    for helper in running:
-        if not helper.cancelled():
-            helper.result()
-    return results
+    """``work`` of each item, in order, on several threads; ``work`` should release the interpreter's lock."""
+    count = min(_threads(threads), len(items))
+    return list((_pool(_threads(threads)).map if count > 1 else map)(work, items))
 
 
 @cache

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from ..curves.bspline import Spline, full_knots, span_controls
 from ..errors import PolygonError
 from ..types import FloatArray, IntArray
-from .batch import filled, run_batch
+from .batch import run_batch
 from .intervals import Intervals, search_intervals
 from .method import SETTLED, Method
 from .polygon import clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
@@ -109,8 +109,8 @@ def _intervals(
     if method.degree == 3 and method.variant:
         variant = 2 if method.variant == 4 else method.variant
         same = replace(method, variant=variant, knots=None, max_iterations=0, diagnostics=False)
-        shares = filled(1, method.peak_share)
-        found = run_batch(p, np.array((0, len(p))), same, shares, filled(1, np.nan), u, tangents[None]).arrays
+        shares = np.full(1, method.peak_share)
+        found = run_batch(p, np.array((0, len(p))), same, shares, np.full(1, np.nan), u, tangents[None]).arrays
         return Intervals(found.bounds[free], int(found.whole[0, 3]), float(found.rates[0]))
     first = free - ((method.degree + 1) // 2 if method.closed else 2)
     order = method.degree + 2
@@ -323,31 +323,19 @@ def solved(
 
 def _corrected(spline: Spline, t: FloatArray, e: FloatArray, natural: FloatArray) -> Spline:
     """The spline moved by e (n, d) at its vertices' parameters (n,); NaN or infinite if the system is singular."""
-    from scipy.linalg import LinAlgError, solve_banded
+    from scipy.sparse import csc_array, identity
+    from scipy.sparse.linalg import splu
 
     columns, weights = spline.basis_rows(t)
-    n, P = len(t), spline.control_points.copy()
-    if spline.closed:  # in the order 0, n-1, 1, n-2, … neighbours on the ring are near each other
-        i = np.arange(n)
-        place = np.minimum(2 * i, 2 * (n - 1 - i) + 1)
-        rows, columns, order = place, place[columns], np.argsort(place)
-    else:  # control points beside natural ends follow their neighbours, the others at the ends are fixed
-        free = np.arange(1, n - 1)
-        columns, weights, e = columns[free] - 2, weights[free], e[free]
-        weights[columns == -1] *= natural[0]
-        weights[columns == n - 2] *= natural[1]
-        weights[(columns < -1) | (columns > n - 2)] = 0.0
-        rows, columns, order = free - 1, columns.clip(0, n - 3), free - 1
-    width = int(np.abs(columns - rows[:, None]).max())
-    band = np.zeros((2 * width + 1, len(rows)))
-    np.add.at(band, (width + rows[:, None] - columns, columns), weights)
+    n, P, inner = len(t), spline.control_points, slice(None)
+    rows, spread = np.repeat(np.arange(n), columns.shape[1]), identity(n, format="csc")
+    matrix = csc_array((weights.ravel(), (rows, columns.ravel())), shape=(n, len(P)))
+    if not spline.closed:  # control points beside natural ends follow their neighbours, others at the ends are fixed
+        shares, points, inner = np.ones(n), np.arange(1, n + 1), slice(1, -1)
+        shares[[0, -1]] = natural
+        spread = csc_array((shares, (points, (points - 2).clip(0, n - 3))), shape=(n + 2, n - 2))
     try:
-        moves = solve_banded((width, width), band, e[order], check_finite=False)
-    except LinAlgError:
-        moves = np.full_like(e, np.nan)
-    if spline.closed:
-        P += moves[rows]
-    else:
-        P[2:-2] += moves
-        P[[1, -2]] += natural[:, None] * moves[[0, -1]]
-    return Spline(P, spline.knots, spline.degree, spline.closed)
+        moves = splu((matrix @ spread)[inner]).solve(e[inner])
+    except RuntimeError:  # exactly singular
+        moves = np.full((spread.shape[1], e.shape[1]), np.nan)
+    return Spline(P + spread @ moves, spline.knots, spline.degree, spline.closed)
