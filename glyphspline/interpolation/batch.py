@@ -43,6 +43,8 @@ def run_batch(
         method: of degree 3, variant 1 to 3. peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
         tolerances: (K,) residual tolerances; NaN is replaced by the default one.
     """
+    from .kernels import driver  # at the first call, as it imports the compiler
+
     (total, d), count, closed = points.shape, len(offsets) - 1, method.closed
     tangents = NO_TANGENTS
     if not closed:
@@ -56,29 +58,15 @@ def run_batch(
     )  # fmt: skip
 
     def work(part: tuple[int, int]) -> Any:
-        return _driver().run(*part, given, tuple(found), _memory(offsets, *part, d))
+        first, stop = part
+        blocks = -(-int(np.diff(offsets[first : stop + 1]).max(initial=1)) // driver.LANES)  # of the largest polygon
+        # NumPy asks for huge pages, which compiled code does not: passes over 60,000 vertices take a fifth less time.
+        memory = np.empty(blocks * (driver.BLOCK + 3 * driver.STRIDE * (d + d % 2)))
+        return driver.run(first, stop, given, tuple(found), memory)
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
     return BatchedInterpolation(offsets, closed, tolerances, joined, found)
-
-
-def _memory(offsets: IntArray, first: int, stop: int, d: int) -> FloatArray:
-    """Memory for the blocks of the largest polygon.
-
-    NumPy asks for huge pages, which compiled code does not: passes over 60,000 vertices take a fifth less time.
-    """
-    most = int(np.diff(offsets[first : stop + 1]).max())
-    driver = _driver()
-    return np.empty(-(-max(most, 1) // driver.LANES) * (driver.BLOCK + 3 * driver.STRIDE * (d + d % 2)))
-
-
-@cache
-def _driver() -> Any:
-    """The compiled driver, imported at the first call, as it imports the compiler."""
-    from .kernels import driver
-
-    return driver
 
 
 def _threads(threads: int | None) -> int:
