@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -84,9 +83,7 @@ Out = Annotated[Path, out("Write to this folder.", "DIR", parser=place, show_def
 
 def as_typed(text: str) -> str:
     """Text of the command line as UTF-8, also where the locale is not: with LC_ALL=C Python keeps its bytes."""
-    if not any("\udc80" <= character <= "\udcff" for character in text):
-        return text
-    return os.fsencode(text).decode("utf-8", "surrogateescape")
+    return text.encode(errors="surrogateescape").decode(errors="surrogateescape")
 
 
 @dataclass(frozen=True)
@@ -150,10 +147,6 @@ class Instance:
             except ValueError:
                 raise GlyphsplineError(f"--location is like wght=700,wdth=80, not {item!r}") from None
         return found
-
-
-FIRST = Instance()
-"""No font of a file is asked for, nor a place: the first one, at its default."""
 
 
 @dataclass(frozen=True)

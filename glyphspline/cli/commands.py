@@ -189,6 +189,7 @@ def atlas(
     subset: opt.Subset,
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     run: Annotated[opt.RunOptions, only("jobs", "quiet")],
+    instance: opt.Instance,
     out: Annotated[Path, opt.out("Write this PDF.", "FILE", parser=place)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
@@ -201,7 +202,6 @@ def atlas(
     profiles: Annotated[
         str | None, About("Add a page with κ(s) for these characters; for up to 12 glyphs, for all.")
     ] = None,
-    instance: opt.Instance = opt.FIRST,
     maps: Maps = BOTH,
 ) -> bool:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours.
@@ -246,7 +246,7 @@ app.command(cls=BareOptions)(mend)
 @grouped
 def view(
     font: opt.FontFile,
-    instance: Annotated[opt.Instance, only("face_index")] = opt.FIRST,
+    instance: Annotated[opt.Instance, only("face_index")],
     port: Annotated[
         int, About("Listen on this port; 0 takes any that is free.", more={"min": 0, "max": 65535, "parser": None})
     ] = 0,
@@ -291,12 +291,12 @@ def demo(
     with workplace(run.jobs, None, specs[0]) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
             source = open_source(path)
-            say_face(source, opt.FIRST, run.quiet)
+            say_face(source, opt.Instance(), run.quiet)
             names = source.select(text=text)
             if not names:
                 stop(f"{path} has none of {text}: give --text")
             folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
-            call = Conversion(folder, spec, subset, opt.FIRST, replace(run, resume=False))
+            call = Conversion(folder, spec, subset, opt.Instance(), replace(run, resume=False))
             undone |= run_face(source, names, call, executor).undone
             shown.append(folder)
     notebooks = out / "notebooks"

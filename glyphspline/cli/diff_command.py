@@ -30,13 +30,13 @@ def diff(
         Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
     ],
     subset: opt.Subset,
+    instance: opt.Instance,
     report: Annotated[opt.ReportOptions, only("rows")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     tolerance: Annotated[
         float | None,
         About("Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.", metavar="UNITS"),
     ] = None,
-    instance: opt.Instance = opt.FIRST,
     html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
 ) -> bool:
     """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.

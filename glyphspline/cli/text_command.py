@@ -55,10 +55,11 @@ def text(
     maps: Maps,
     drawings: opt.DrawingOptions,
     run: Annotated[opt.RunOptions, only("config", "quiet")],
+    *,
     words: Annotated[
         str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
     ] = None,
-    instance: opt.Instance = opt.FIRST,
+    instance: opt.Instance,
 ) -> bool:
     """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
 
