@@ -25,7 +25,7 @@ from .check_command import check
 from .diff_command import diff
 from .groups import BareOptions, grouped, only, place, without
 from .mend_command import mend
-from .messages import RULE, UNDONE, listen, print_json, printable, progress, say, stop, watch_interruption
+from .messages import RULE, UNDONE, print_json, printable, progress, say, stop, watch_interruption
 from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, run_face, say_face, workplace
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
@@ -49,7 +49,6 @@ app = typer.Typer(
 def common(version: opt.Version = False) -> None:
     """Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps."""
     gc.enable()
-    listen()
 
 
 @app.command(cls=BareOptions)

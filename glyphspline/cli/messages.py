@@ -116,26 +116,23 @@ def printable(text: str) -> str:
 
 
 @contextmanager
-def json_lines() -> Iterator[Any]:
-    """Progress as JSON lines on standard error, one a second at most."""
-    last = 0.0
-
-    def observe(done: int, total: int, failed: int) -> None:
-        nonlocal last
-        now = time.monotonic()
-        if now - last >= 1 or done == total:
-            last = now
-            say(json.dumps({"done": done, "total": total, "failed": failed}))
-
-    yield observe
-
-
-@contextmanager
-def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
+def progress(quiet: bool, *, compiling: bool = False, json_log: bool = False) -> Iterator[Any]:
     """Show a bar of glyphs, or of kinds of work that are compiled, on standard error if that is a terminal.
 
-    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar.
+    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar. With
+    ``json_log`` these are JSON lines instead, one a second at most.
     """
+    if json_log:
+        last = 0.0
+
+        def log(done: int, total: int, failed: int) -> None:
+            nonlocal last
+            if time.monotonic() - last >= 1 or done == total:
+                last = time.monotonic()
+                say(json.dumps({"done": done, "total": total, "failed": failed}))
+
+        yield log
+        return
     if quiet or not sys.stderr.isatty():
         yield None
         return
@@ -144,11 +141,9 @@ def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
 
     columns: list[Any] = [rich.BarColumn(), rich.MofNCompleteColumn()]
     if compiling:
-        words = rich.TextColumn("compiling"), rich.TextColumn("kinds of work")
-        columns = [words[0], *columns, words[1], rich.TimeElapsedColumn()]
+        columns = ["compiling", *columns, "kinds of work", rich.TimeElapsedColumn()]
     else:
-        rate, failures = rich.TextColumn("{task.fields[rate]:.0f}/s"), rich.TextColumn("{task.fields[failed]} failed")
-        columns += [rate, rich.TimeRemainingColumn(), failures]
+        columns += ["{task.fields[rate]:.0f}/s", rich.TimeRemainingColumn(), "{task.fields[failed]} failed"]
     bar = rich.Progress(*columns, console=Console(stderr=True), transient=True)
     task = bar.add_task("", total=None, rate=0.0, failed=0)
 
