@@ -90,10 +90,9 @@ def check(
     if report.ghmarkdown is not None:
         put(report.ghmarkdown, as_markdown(faces, shown, level))
     if report.html is not None:
-        from ..report.findings_page import CheckedFont, findings_page
+        from ..report.findings_page import findings_page
 
-        drawn = [CheckedFont(each.font, each.source, each.findings, each.scores) for each in faces if each.source]
-        put(report.html, findings_page(drawn))
+        put(report.html, findings_page([face for face in faces if face.source]))
     if report.plot is not None and faces[0].kinks is not None:
         from ..readers import open_source
         from ..writers.figures.axis_pages import turns_figure

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -16,9 +15,8 @@ from ..mending.state import Change
 from ..outlines.masters import DesignAxis, Masters
 from ..types import FloatArray, rounded_up
 from ..writers.svg.comb import palette
-from ..writers.svg.document import text
 from .data import PRECISION, contours_in
-from .pages import page_of
+from .pages import kind_switches, page_of
 
 DRAWN, LISTED = 500, 20_000
 """Findings with a drawing: those whose points moved most. Findings in the table."""
@@ -60,12 +58,6 @@ def mending_page(
             "" if change.distance is None else f"{rounded_up(change.distance, 3):g}",
             left_words(change), number, *worst,
         ])  # fmt: skip
-    counts = Counter(change.kind for change in ordered)
-    switches = "".join(
-        f'<label><input type="checkbox" data-kind="{k}" checked><i></i>{escape(kind)} '
-        f"<span>{counts[kind]}</span></label>"
-        for k, kind in enumerate(kinds)
-    )
     setup = {
         "kinds": kinds, "rows": rows, "drawings": drawings, "palette": palette(),
         "axes": [
@@ -76,10 +68,12 @@ def mending_page(
             for axis, values in zip(axes, places, strict=True)
         ],
     }  # fmt: skip
-    sentences = "".join([f"<p>{text(line)}</p>" for line in facts])
+    switches = kind_switches(
+        [(k, kind, "") for k, kind in enumerate(kinds)], Counter(change.kind for change in ordered)
+    )
     return page_of(
-        "mending.html", ("theme.css", "findings.css", "mending.css"), heading, SCRIPTS, setup, kinds=switches,
-        facts=sentences,
+        "mending.html", ("theme.css", "findings.css", "mending.css"), heading, SCRIPTS, setup, facts=facts,
+        kinds=switches,
     )  # fmt: skip
 
 
