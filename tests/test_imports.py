@@ -25,7 +25,7 @@ CHECKS = CURVES | {"outlines", "checks"}
 WRITERS = FITTING | {"readers", "typesetting", "writers"}
 PLAN = {
     "_version": set(),
-    "compiled": set(),
+    "compiled": {"files"},
     "arrays": {"compiled", "types"},
     "intrinsics": {"compiled"},
     "errors": set(),

@@ -16,7 +16,7 @@ from . import arguments as opt
 from .config import CHECK, names_of, settings
 from .groups import collected, grouped, only, without
 from .messages import STDOUT, progress, put, say, stop
-from .running import chosen, say_face
+from .running import chosen, opened, say_face
 from .tables import plain
 
 if TYPE_CHECKING:
@@ -94,12 +94,10 @@ def check(
 
         put(report.html, findings_page([face for face in faces if face.source]))
     if report.plot is not None and faces[0].kinks is not None:
-        from ..readers import open_source
         from ..writers.figures.axis_pages import turns_figure
 
         kind: Any = report.plot.suffix[1:].lower()
-        source = open_source(files[0], instance.face_index or 0, instance.place)
-        put(report.plot, turns_figure(source, faces[0].kinks, kind))
+        put(report.plot, turns_figure(opened(files[0], instance, quiet=True), faces[0].kinks, kind))
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:

@@ -26,7 +26,7 @@ from .diff_command import diff
 from .groups import BareOptions, grouped, only, place, without
 from .mend_command import mend
 from .messages import RULE, UNDONE, print_json, printable, progress, say, stop, watch_interruption
-from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, run_face, say_face, workplace
+from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, opened, run_face, workplace
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
 
@@ -211,15 +211,13 @@ def atlas(
     With --axis, each glyph of a variable font has a page: combs of source and result at places of the axis, and the
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
     """
-    from ..readers import open_source
     from ..runs.jobs.atlas import make_atlas
 
     if out.suffix.lower() not in (".pdf", ""):
         stop(f"--out {out}: an atlas is a PDF, and its name ends in .pdf")
     if axis is not None and (profiles is not None or maps.corner_teeth or maps.comb != "both"):
         stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
-    source = open_source(font, instance.face_index or 0, instance.place)
-    say_face(source, instance, run.quiet)
+    source = opened(font, instance, run.quiet)
     names = chosen(source, subset, run.quiet)
     profiled = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
@@ -253,11 +251,9 @@ def view(
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
     need("view")
-    from ..readers import open_source
     from ..viewer import serve
 
-    face = instance.face_index or 0
-    say_face(open_source(font, face), instance, quiet=False)
+    face = opened(font, instance, quiet=False).face_index
     serve(font, face, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
@@ -275,7 +271,6 @@ def demo(
 
     龍 and 好 are converted with the preset paper. The package's notebooks are copied to notebooks/.
     """
-    from ..readers import open_source
     from ..runs.schedule import kinds_for
     from ..runs.warm import is_kept
     from ..runs.warm import warm as warm_up
@@ -289,8 +284,7 @@ def demo(
         warm_up(run.jobs, kinds=[*kinds])
     with workplace(run.jobs, None, specs[0]) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
-            source = open_source(path)
-            say_face(source, opt.Instance(), run.quiet)
+            source = opened(path, opt.Instance(), run.quiet)
             names = source.select(text=text)
             if not names:
                 stop(f"{path} has none of {text}: give --text")

@@ -18,7 +18,7 @@ from .tables import FontRun, with_character
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..readers import Selection, Source
+    from ..readers import AnySource, Selection, Source
     from ..runs.spec import RunSpec
     from ..runs.summary import Summary
 
@@ -112,6 +112,15 @@ def say_face(source: Source, instance: opt.Instance, quiet: bool) -> None:
         say(f"face {source.face_index} of {source.num_faces} is taken, {name}: --face-index N takes another")
 
 
+def opened(font: Path, instance: opt.Instance, quiet: bool) -> AnySource:
+    """A font, at the face and the place that are asked for."""
+    from ..readers import open_source
+
+    source = open_source(font, instance.face_index or 0, instance.place)
+    say_face(source, instance, quiet)
+    return source
+
+
 def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None:
     """Stop if the options of a run over masters clash."""
     if bool(single.others) != bool(single.axis):
@@ -127,15 +136,12 @@ def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None
 
 def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleFonts, executor: Executor) -> bool:
     """Convert a variable font, or single fonts that become one, in all masters; whether something was not done."""
-    from ..readers import open_source
     from ..runs.jobs.masters import convert_font_masters
 
     if len(fonts) != 1:
         stop("--masters takes one font")
     run = call.run
-    sources = [open_source(font, call.instance.face_index or 0) for font in (*fonts, *(single.others or ()))]
-    for source in sources:
-        say_face(source, call.instance, run.quiet)
+    sources = [opened(font, call.instance, run.quiet) for font in (*fonts, *(single.others or ()))]
     names = chosen(sources[0], call.subset, run.quiet)
     with progress(run.quiet, json_log=run.json_log) as observer:
         summary = convert_font_masters(
