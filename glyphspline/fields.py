@@ -103,7 +103,7 @@ def check(value: Any) -> None:
     Raises:
         OptionError: a value out of its range or of the wrong kind.
     """
-    for name, kind, about in options_of(type(value)):
+    for name, kind, about in options_of(value.__class__):
         given = getattr(value, name)
         if given is None and getattr(type(value), name, None) is None:
             continue
@@ -118,7 +118,7 @@ def check(value: Any) -> None:
 def arguments(value: Any, default: Any) -> dict[str, list[str]]:
     """The words of a command line that make ``value`` out of ``default``, by the names of its fields."""
     found = {}
-    known = {one.name: one for one in options_of(type(value))}
+    known = {one.name: one for one in options_of(value.__class__)}
     for name in (one.name for one in fields(value)):
         own, usual = getattr(value, name), getattr(default, name)
         if is_dataclass(own) and usual is not None:

@@ -13,7 +13,7 @@ from ..errors import OptionError
 from ..fields import options_of
 from ..files import make_place
 from . import arguments as opt
-from .config import CHECK, names_of, settings
+from .config import CHECK, settings
 from .groups import collected, grouped, only, without
 from .messages import STDOUT, progress, put, say, stop
 from .running import chosen, opened, say_face
@@ -144,7 +144,7 @@ def project_settings() -> tuple[Asked, opt.Subset, opt.Instance]:
     """
     groups: list[Any] = [opt.CheckOptions, opt.ReportOptions, opt.Subset, opt.Instance, opt.RunOptions]
     named = ((one.flags, one.name) for group in groups for one in options_of(group))
-    given = settings(None, names_of(named), CHECK)
+    given = settings(None, named, CHECK)
     options, report, subset, instance, _ = (collected(group(), without(), given) for group in groups)
     return asked_of(options, report), subset, instance
 
@@ -156,15 +156,10 @@ def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
         OptionError: one is not known, or is no number above 0.
     """
     names = [each.name for each in fields(Thresholds)]
-    found: dict[str, float] = {}
-    for item in opt.items_of(text):
-        name, _, value = item.partition("=")
-        if name.replace("-", "_") not in names:
-            raise OptionError(f"--thresholds has no {name!r}: there are {', '.join(names)}")
-        try:
-            found[name.replace("-", "_")] = float(value)
-        except ValueError:
-            raise OptionError(f"--thresholds is like kink=1,short=2, not {item!r}") from None
+    given = opt.numbers_of(text, "--thresholds is like kink=1,short=2")
+    found = {name.replace("-", "_"): value for name, value in given.items()}
+    if unknown := [name for name in given if name.replace("-", "_") not in names]:
+        raise OptionError(f"--thresholds has no {unknown[0]!r}: there are {', '.join(names)}")
     if corner_angle is not None:
         found["corner_angle"] = corner_angle
     return Thresholds(**found)

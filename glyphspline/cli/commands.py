@@ -37,7 +37,6 @@ BRUSHED = "龍好"
 """Characters of the demonstration in brush faces."""
 
 app = typer.Typer(
-    help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
     no_args_is_help=True,
     epilog=RULE,
     pretty_exceptions_enable=False,

@@ -21,7 +21,7 @@ table: the worst."""
 PRECISION = 2
 """Decimals of path data and points."""
 
-SCRIPTS = ("page.js", "shapes.js", "findings.js")
+SCRIPTS = ("page.js", "shapes.js", "places.js", "findings.js")
 
 NUMBERS = {kind.name: k for k, kind in enumerate(KINDS)}
 

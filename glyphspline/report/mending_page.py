@@ -24,7 +24,7 @@ DRAWN, LISTED = 500, 20_000
 STEPS = 48
 """Steps of each axis on the slider."""
 
-SCRIPTS = ("page.js", "shapes.js", "mending.js")
+SCRIPTS = ("page.js", "shapes.js", "places.js", "mending.js")
 
 UNITS = {kind.name: kind.unit for kind in KINDS}
 
