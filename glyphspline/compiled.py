@@ -185,7 +185,7 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
             if found := self._load(SHIPPED, self._file(signature, made_for), target_context):
                 return found
         folder = own_folder()
-        return folder and self._load(folder, self._file(signature, target), target_context)
+        return self._load(folder, self._file(signature, target), target_context) if folder else None
 
     def _load(self, folder: Path, name: str, target_context: Any) -> CompileResult | None:
         try:

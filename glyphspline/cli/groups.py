@@ -154,7 +154,7 @@ def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:
     """The options of a dataclass and of those in it, as parameters for typer."""
     if isinstance(base, Options):
         yield from _expanded(PresetOption(), without())
-    known = {one.name: one for one in options_of(type(base))}
+    known = {one.name: one for one in options_of(base.__class__)}
     for one in fields(base):
         value = getattr(base, one.name)
         if shown(one.name) and is_dataclass(value):

@@ -85,20 +85,15 @@ def positions(axis: DesignAxis) -> FloatArray:
 
 def weights_along(masters: Masters, places: Sequence[FloatArray]) -> list[FloatArray]:
     """(v, K) weights of the masters at the values of each axis, the others at their defaults."""
-    found = []
-    for axis, values in zip(masters.axes, places, strict=True):
-        at = [masters.normalised({axis.tag: float(value)}) for value in values]
-        found.append(masters.weights_at(np.array(at)))
-    return found
+    along = zip(masters.axes, places, strict=True)
+    return [np.array([masters.weights({axis.tag: float(value)}) for value in values]) for axis, values in along]
 
 
 def drawing(old: Masters, new: Masters, places: Sequence[FloatArray]) -> dict[str, Any]:
     """A glyph before and after, in all masters, and their weights along each axis."""
-    sides = {
-        name: contours_in(np.eye(len(masters)), masters.contours) for name, masters in (("old", old), ("new", new))
-    }
+    sides = (contours_in(np.eye(len(masters)), masters.contours) for masters in (old, new))
     weights = [np.round(each, PRECISION + 3).tolist() for each in weights_along(old, places)]
-    return {"em": old.metrics.units_per_em, **sides, "weights": weights}
+    return {"em": old.metrics.units_per_em, **dict(zip(("old", "new"), sides, strict=True)), "weights": weights}
 
 
 def worst_place(old: Masters, change: Change, places: Sequence[FloatArray]) -> tuple[int, int]:
