@@ -51,17 +51,6 @@ def make_place(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
 
 
-def write_made(path: Path, content: bytes) -> None:
-    """Write a file, and its folder if there is none.
-
-    Raises:
-        OutputError: it cannot be written.
-    """
-    make_place(path)
-    with writing(path):
-        path.write_bytes(content)
-
-
 def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
     """Write a file under a temporary name beside it, then rename; returns its size in bytes.
 

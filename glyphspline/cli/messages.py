@@ -12,13 +12,14 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
 import typer
 
 from ..errors import GlyphsplineError, words_of
-from ..files import write_made
+from ..files import make_place, writing
 
 DONE, UNDONE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 
@@ -77,8 +78,10 @@ def put(path: Path, content: str | bytes) -> None:
     """
     if path == STDOUT:
         typer.echo(content, nl=isinstance(content, str) and not content.endswith("\n"))
-    else:
-        write_made(path, content.encode(errors="replace") if isinstance(content, str) else content)  # of paths
+        return
+    make_place(path)
+    with writing(path):
+        path.write_bytes(content.encode(errors="replace") if isinstance(content, str) else content)  # of paths
 
 
 class Logged(logging.Handler):
@@ -86,14 +89,11 @@ class Logged(logging.Handler):
 
     def __init__(self, level: int) -> None:
         super().__init__(level)
-        self._before: set[str] = set()
+        self._say = cache(say)
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a record as a line on standard error."""
-        line = f"{record.name.partition('.')[0]}: {record.getMessage()}"
-        if line not in self._before:
-            self._before.add(line)
-            say(line)
+        self._say(f"{record.name.partition('.')[0]}: {record.getMessage()}")
 
 
 def listen(quiet: bool = False) -> None:
