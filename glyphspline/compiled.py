@@ -40,6 +40,9 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.core.typing.ctypes_utils import to_ctypes
 from numba.extending import models, register_model
+from numba.misc.appdirs import user_cache_dir
+
+from .files import write_whole
 
 JIT = not numba.config.DISABLE_JIT  # type: ignore[attr-defined, unused-ignore]
 """Whether functions are compiled: Numba's own switch."""
@@ -177,10 +180,12 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         """The code for a signature; None if there is none."""
         nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
         target = target_context.codegen().magic_tuple()
-        made_for = shipped_target(target)
-        found = made_for and self._load(SHIPPED, self._file(signature, made_for), target_context)
-        folder = None if found else own_folder()
-        return found or (folder and self._load(folder, self._file(signature, target), target_context)) or None
+        if not why_not_shipped(target):
+            made_for = tuple(_made_for()["target"])
+            if found := self._load(SHIPPED, self._file(signature, made_for), target_context):
+                return found
+        folder = own_folder()
+        return self._load(folder, self._file(signature, target), target_context) if folder else None
 
     def _load(self, folder: Path, name: str, target_context: Any) -> CompileResult | None:
         try:
@@ -197,13 +202,8 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
             return
         file = folder / self._file(signature, code.codegen.magic_tuple())
         used.add(file.name)
-        with suppress(OSError), tempfile.NamedTemporaryFile(dir=folder, suffix=".tmp", delete=False) as new:
-            try:
-                new.write(dumps(self._reduced(code)))
-                new.close()
-                os.replace(new.name, file)
-            except OSError:
-                os.unlink(new.name)
+        with suppress(OSError):
+            write_whole(str(file), dumps(self._reduced(code)))
         for old in folder.glob(f"{self._name}-*.nbc"):
             with suppress(OSError):
                 if old.stat().st_mtime < time.time() - 30 * 86400:  # within a month one may go back to a branch
@@ -233,13 +233,8 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
 
 
 @cache
-def shipped_target(target: tuple[str, str, str]) -> tuple[str, str, str] | None:
-    """What the wheel's code was compiled for, if a target (triple, processor, its features) runs it."""
-    return None if why_not_shipped(target) else tuple(_made_for()["target"])
-
-
 def why_not_shipped(target: tuple[str, str, str]) -> str:
-    """Why this process cannot use the wheel's code; empty if it can."""
+    """Why this process cannot use the wheel's code on a target (triple, processor, its features); empty if it can."""
     made_for = _made_for()
     if not made_for:
         return "this copy of glyphspline has no compiled code"
@@ -267,14 +262,8 @@ def own_folder() -> Path | None:
     The user's choice, or beside the source files, or among the user's caches, or a folder among the temporary files,
     which processes started from now on use too.
     """
-    if sys.platform == "win32":
-        caches = os.environ.get("LOCALAPPDATA", "~/AppData/Local")
-    elif sys.platform == "darwin":
-        caches = "~/Library/Caches"
-    else:
-        caches = os.environ.get("XDG_CACHE_HOME", "~/.cache")
     chosen = [Path(os.environ[PLACE])] if os.environ.get(PLACE) else []
-    for folder in (*chosen, PACKAGE / "__pycache__" / "compiled", Path(os.path.expanduser(caches)) / "glyphspline"):
+    for folder in (*chosen, PACKAGE / "__pycache__" / "compiled", Path(user_cache_dir("glyphspline", False))):
         with suppress(OSError):  # trying is the only way to know: rights alone do not tell
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()
@@ -372,14 +361,14 @@ class _Listener(event.Listener):  # type: ignore[misc, unused-ignore]
             why = why_not_shipped(target) or "its sources are not those of the wheel's code"
             words = "compiling once, up to two minutes (%s); kept in %s"
             logging.getLogger(__package__).warning(words, why, own_folder() or "no folder, as none can be written to")
-        self.depth, self.count = self.depth + 1, self.count + 1
-        self._tell()
+        self.count += 1
+        self._move(1)
 
     def on_end(self, event: Any) -> None:
-        self.depth -= 1
-        self._tell()
+        self._move(-1)
 
-    def _tell(self) -> None:
+    def _move(self, step: int) -> None:
+        self.depth += step
         for observer in self.observers:
             observer()
 

@@ -81,13 +81,9 @@ def option(
     return field(default=default, metadata={"about": About(help, panel, metavar, tuple(flags.split()), **about)})
 
 
-def options_of(value: Any) -> tuple[Described, ...]:
-    """The options of a dataclass, or of a value of one, without those of dataclasses in it."""
-    return _options_of(value if isinstance(value, type) else type(value))
-
-
 @cache
-def _options_of(kind: Any) -> tuple[Described, ...]:
+def options_of(kind: type[Any]) -> tuple[Described, ...]:
+    """The options of a dataclass, without those of dataclasses in it."""
     hints = get_type_hints(kind)
     return tuple(
         described(one.name, hints[one.name], one.metadata["about"]) for one in fields(kind) if "about" in one.metadata
@@ -107,7 +103,7 @@ def check(value: Any) -> None:
     Raises:
         OptionError: a value out of its range or of the wrong kind.
     """
-    for name, kind, about in options_of(value):
+    for name, kind, about in options_of(value.__class__):
         given = getattr(value, name)
         if given is None and getattr(type(value), name, None) is None:
             continue
@@ -122,7 +118,7 @@ def check(value: Any) -> None:
 def arguments(value: Any, default: Any) -> dict[str, list[str]]:
     """The words of a command line that make ``value`` out of ``default``, by the names of its fields."""
     found = {}
-    known = {one.name: one for one in options_of(value)}
+    known = {one.name: one for one in options_of(value.__class__)}
     for name in (one.name for one in fields(value)):
         own, usual = getattr(value, name), getattr(default, name)
         if is_dataclass(own) and usual is not None:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import BinaryIO
 
 from .errors import GlyphsplineError, OutputError, words_of
+
+_numbers = count()
 
 PARTIAL = ".part"
 """Suffix of temporary files. Their names begin with a dot, so globs over results do not match them."""
@@ -48,30 +51,17 @@ def make_place(path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
 
 
-def write_made(path: Path, content: bytes) -> None:
-    """Write a file, and its folder if there is none.
-
-    Raises:
-        OutputError: it cannot be written.
-    """
-    make_place(path)
-    with writing(path):
-        path.write_bytes(content)
-
-
 def write_whole(path: str, content: str | bytes, *, durable: bool = False) -> int:
     """Write a file under a temporary name beside it, then rename; returns its size in bytes.
 
-    Each process reuses one temporary name, which file systems handle faster than new names. ``durable`` syncs the file
-    to the disk before it is renamed, which takes some milliseconds.
+    ``durable`` syncs the file to the disk before it is renamed, which takes some milliseconds.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
     """
     data = content.encode() if isinstance(content, str) else content
-    partial = os.path.join(os.path.dirname(path), f".{os.getpid()}{PARTIAL}")
-    with replacing(path, durable=durable, partial=partial, buffering=0) as file:
-        write_all(file, data)
+    with replacing(path, durable=durable) as file:
+        file.write(data)
     return len(data)
 
 
@@ -83,21 +73,15 @@ def write_all(file: BinaryIO, data: bytes) -> None:
 
 
 @contextmanager
-def replacing(
-    path: Path | str, *, durable: bool = False, partial: str | None = None, buffering: int = -1
-) -> Iterator[BinaryIO]:
+def replacing(path: Path | str, *, durable: bool = False) -> Iterator[BinaryIO]:
     """A file to write to, which gets its name when the block ends without an error; see :func:`write_whole`.
-
-    Args:
-        partial: the temporary name; without it, one of this process for this file. buffering: as :func:`open` has it.
 
     Raises:
         OutputError: it cannot be written; a file of this name remains unchanged.
     """
-    folder, name = os.path.split(path)
-    partial = partial or os.path.join(folder, f".{name.strip('.')}-{os.getpid()}{PARTIAL}")
+    partial = os.path.join(os.path.dirname(path), f".{os.getpid()}-{next(_numbers)}{PARTIAL}")
     with writing(path):
-        file = open(partial, "xb", buffering)  # noqa: SIM115 -- x does not follow a link planted under the temporary name
+        file = open(partial, "xb")  # noqa: SIM115 -- x does not follow a link planted under the temporary name
         try:
             with file:
                 yield file

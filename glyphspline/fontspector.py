@@ -62,11 +62,8 @@ def register(plugin: Any) -> None:
         plugin.register_filetype(kind, pattern)
     checks = []
     for kind in ("TTF", *SOURCES):
-
-        def of_kind(font: Path) -> Iterator[Any]:
-            return outlines(font)
-
-        checks.append(api.check(id=check_of(kind), title=title, rationale=RATIONALE, applies_to=kind)(of_kind))
+        check = api.check(id=check_of(kind), title=title, rationale=RATIONALE, applies_to=kind)
+        checks.append(check(lambda font: outlines(font)))  # a function of its own for each
     plugin.register_simple_profile(PROFILE, checks, "Outlines")
 
 

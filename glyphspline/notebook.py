@@ -24,6 +24,8 @@ from .types import FloatArray, rounded_up
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from .writers.svg.comb import Teeth
+
 SHOWN = (
     "vertices", "segments", "iterations", "residual", "converged", "deviation", "bending_energy", "max_curvature",
     "curvature_extrema",
@@ -130,13 +132,23 @@ def _marks(curve: Spline | Interpolation) -> dict[str, FloatArray]:
 
 def _comb_of(cubics: FloatArray) -> dict[str, FloatArray]:
     """Teeth (k, 2, 2) of a curve in the plane by colour; its own extent is the em."""
-    from .writers.svg.comb import SIDES, SPACING, TOOTH, colour_classes, palette, teeth_of
+    from .writers.svg.comb import SIDES, TOOTH, colour_classes, palette
 
     extent = float(np.ptp(cubics, axis=(0, 1)).max())
-    item = curvature_comb(cubics, SPACING * extent)
-    drawn = teeth_of(item, extent * REACH / TOOTH, robust_scale([item]))
+    (drawn,) = _teeth([cubics], np.ones(1), extent, None, REACH / TOOTH)
     teeth, classes = np.stack([drawn.feet, drawn.tips], axis=1), colour_classes(drawn.relative)
     return {colour: teeth[classes == k] for k, colour in enumerate(palette(), -SIDES) if (classes == k).any()}
+
+
+def _teeth(
+    curves: list[FloatArray], sides: FloatArray, em: float, scale: float | None, longer: float = 1.0
+) -> list[Teeth]:
+    """Combs of curves at a scale, or at one of their own; ``longer``: than teeth of a glyph are."""
+    from .writers.svg.comb import SPACING, teeth_of
+
+    drawn = [(curvature_comb(cubics, SPACING * em), s) for cubics, s in zip(curves, sides, strict=True) if len(cubics)]
+    unit = robust_scale([item for item, _ in drawn]) if scale is None else scale
+    return [teeth_of(item, em * longer, unit, side) for item, side in drawn]
 
 
 def _space_svg(curve: Spline | Interpolation) -> str:
@@ -237,7 +249,7 @@ def plot(
     Returns:
         The axes.
     """
-    from .writers.figures.basics import outline_patch, ring
+    from .writers.figures.basics import comb_patches, outline_patch, ring
 
     curve = thing if isinstance(thing, Spline | Interpolation) else None
     space = curve is not None and _spline_of(curve).control_points.shape[1] > 2
@@ -270,7 +282,7 @@ def plot(
 
         # A curve alone has no ink: it turns left or right.
         sides = np.ones(1) if curve is not None else ink_sides(glyph.arrays.curves)
-        patches += _comb_patches(curves, sides, em, scale, closed=closed)
+        patches += comb_patches(_teeth(curves, sides, em, scale), closed=closed, width=0.6)
     patches += outline_patch(curves, **{"facecolor": "none", "edgecolor": "black", "linewidth": 1.2} | style)
     for patch in patches:
         axes.add_patch(patch)
@@ -291,15 +303,3 @@ def _cubics(spline: Spline) -> FloatArray:
         return np.array([as_cubic(piece) for piece in spline.to_bezier()])
     extent = float(np.ptp(spline.control_points, axis=0).max())
     return cubic_approximation(spline.to_bezier(), 1e-5 * extent)
-
-
-def _comb_patches(
-    curves: list[FloatArray], sides: FloatArray, em: float, scale: float | None, *, closed: bool
-) -> list[Any]:
-    from .writers.figures.basics import comb_patches
-    from .writers.svg.comb import SPACING, teeth_of
-
-    drawn = [(curvature_comb(cubics, SPACING * em), s) for cubics, s in zip(curves, sides, strict=True) if len(cubics)]
-    found = [item for item, _ in drawn]
-    unit = robust_scale(found) if scale is None else scale
-    return comb_patches([teeth_of(item, em, unit, side) for item, side in drawn], closed=closed, width=0.6)

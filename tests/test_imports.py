@@ -25,7 +25,7 @@ CHECKS = CURVES | {"outlines", "checks"}
 WRITERS = FITTING | {"readers", "typesetting", "writers"}
 PLAN = {
     "_version": set(),
-    "compiled": set(),
+    "compiled": {"files"},
     "arrays": {"compiled", "types"},
     "intrinsics": {"compiled"},
     "errors": set(),
@@ -168,7 +168,7 @@ def test_a_command_leaves_heavy_libraries_to_its_workers(
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     filled = [word.replace("FONT", str(font)).replace("OUT", str(tmp_path)) for word in arguments]
     code = (
-        "import sys\nfrom glyphspline.cli import app\n"
+        "import sys\nfrom glyphspline.cli.commands import app\n"
         f"if __name__ == '__main__':\n    status = app({filled!r}, standalone_mode=False)\n"
         "    print('loaded', *sorted({name.split('.')[0] for name in sys.modules}))\n"
         "    sys.exit(status)"

@@ -114,7 +114,7 @@ class Thresholds:
     def limits(self, units_per_em: float) -> Limits:
         """The thresholds in font units and radians, as passes take them."""
         converted = []
-        for name, _, about in options_of(self):
+        for name, _, about in options_of(Thresholds):
             value: float = getattr(self, name)
             of_unit = {
                 "degrees": radians(value),

@@ -3,12 +3,6 @@
 from __future__ import annotations
 
 import gc
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from .commands import app
-
-__all__ = ["app", "main"]
 
 
 def main() -> None:
@@ -17,11 +11,3 @@ def main() -> None:
     from . import commands
 
     commands.main()
-
-
-def __getattr__(name: str) -> Any:
-    if name != "app":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .commands import app
-
-    return app

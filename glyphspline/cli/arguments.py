@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -11,12 +10,12 @@ import typer
 
 from .._version import __version__
 from ..checks.kinds import KINDS, Level
-from ..errors import GlyphsplineError
+from ..errors import GlyphsplineError, OptionError
 from ..fields import LOOK, WRITTEN, About, option
 from ..typesetting.setting import Align, Direction, Place, Side
-from .config import names_of, settings
+from .config import settings
 from .groups import natural, place
-from .messages import UNUSABLE
+from .messages import stop
 
 if TYPE_CHECKING:
     from ..readers import Selection, Source
@@ -42,16 +41,31 @@ def configured(context: typer.Context, path: Path | None) -> Path | None:
     if not context.resilient_parsing:
         named = ((one.opts, str(one.name)) for one in context.command.params)
         try:
-            context.default_map = settings(path, names_of(named), context.command.name)
+            context.default_map = settings(path, named, context.command.name)
         except GlyphsplineError as error:
-            typer.echo(f"glyphspline: {error}", err=True)
-            raise typer.Exit(UNUSABLE) from None
+            stop(str(error))
     return path
 
 
 def items_of(text: str | None) -> list[str]:
     """The items of a list between commas."""
     return [item for item in (text or "").replace(" ", "").split(",") if item]
+
+
+def numbers_of(text: str | None, rule: str) -> dict[str, float]:
+    """Numbers by name of a list as kink=1,short=2; of one that is given twice the last counts.
+
+    Raises:
+        OptionError: one is no number, with the rule that says how the list is.
+    """
+    found = {}
+    for item in items_of(text):
+        name, _, value = item.partition("=")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            raise OptionError(f"{rule}, not {item!r}") from None
+    return found
 
 
 def print_version(wanted: bool) -> None:
@@ -84,9 +98,7 @@ Out = Annotated[Path, out("Write to this folder.", "DIR", parser=place, show_def
 
 def as_typed(text: str) -> str:
     """Text of the command line as UTF-8, also where the locale is not: with LC_ALL=C Python keeps its bytes."""
-    if not any("\udc80" <= character <= "\udcff" for character in text):
-        return text
-    return os.fsencode(text).decode("utf-8", "surrogateescape")
+    return text.encode(errors="surrogateescape").decode(errors="surrogateescape")
 
 
 @dataclass(frozen=True)
@@ -138,22 +150,11 @@ class Instance:
         """``wght=700,wdth=80`` as a dictionary; text without ``=`` is the name of an instance, and stays as it is.
 
         Raises:
-            GlyphsplineError: a value is no number.
+            OptionError: a value is no number.
         """
         if self.location and "=" not in self.location:
             return self.location
-        found: dict[str, float] = {}
-        for item in items_of(self.location):
-            tag, _, value = item.partition("=")
-            try:
-                found[tag] = float(value)
-            except ValueError:
-                raise GlyphsplineError(f"--location is like wght=700,wdth=80, not {item!r}") from None
-        return found
-
-
-FIRST = Instance()
-"""No font of a file is asked for, nor a place: the first one, at its default."""
+        return numbers_of(self.location, "--location is like wght=700,wdth=80")
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,10 @@ from ..errors import OptionError
 from ..fields import options_of
 from ..files import make_place
 from . import arguments as opt
-from .config import CHECK, names_of, settings
+from .config import CHECK, settings
 from .groups import collected, grouped, only, without
 from .messages import STDOUT, progress, put, say, stop
-from .running import chosen, say_face
+from .running import chosen, opened, say_face
 from .tables import plain
 
 if TYPE_CHECKING:
@@ -90,17 +90,14 @@ def check(
     if report.ghmarkdown is not None:
         put(report.ghmarkdown, as_markdown(faces, shown, level))
     if report.html is not None:
-        from ..report.findings_page import CheckedFont, findings_page
+        from ..report.findings_page import findings_page
 
-        drawn = [CheckedFont(each.font, each.source, each.findings, each.scores) for each in faces if each.source]
-        put(report.html, findings_page(drawn))
+        put(report.html, findings_page([face for face in faces if face.source]))
     if report.plot is not None and faces[0].kinks is not None:
-        from ..readers import open_source
         from ..writers.figures.axis_pages import turns_figure
 
         kind: Any = report.plot.suffix[1:].lower()
-        source = open_source(files[0], instance.face_index or 0, instance.place)
-        put(report.plot, turns_figure(source, faces[0].kinks, kind))
+        put(report.plot, turns_figure(opened(files[0], instance, quiet=True), faces[0].kinks, kind))
     if run.as_json:
         put(STDOUT, as_json(faces, asked.thresholds))
     elif shown and not piped and not run.quiet:
@@ -147,7 +144,7 @@ def project_settings() -> tuple[Asked, opt.Subset, opt.Instance]:
     """
     groups: list[Any] = [opt.CheckOptions, opt.ReportOptions, opt.Subset, opt.Instance, opt.RunOptions]
     named = ((one.flags, one.name) for group in groups for one in options_of(group))
-    given = settings(None, names_of(named), CHECK)
+    given = settings(None, named, CHECK)
     options, report, subset, instance, _ = (collected(group(), without(), given) for group in groups)
     return asked_of(options, report), subset, instance
 
@@ -159,15 +156,10 @@ def thresholds_of(text: str | None, corner_angle: float | None) -> Thresholds:
         OptionError: one is not known, or is no number above 0.
     """
     names = [each.name for each in fields(Thresholds)]
-    found: dict[str, float] = {}
-    for item in opt.items_of(text):
-        name, _, value = item.partition("=")
-        if name.replace("-", "_") not in names:
-            raise OptionError(f"--thresholds has no {name!r}: there are {', '.join(names)}")
-        try:
-            found[name.replace("-", "_")] = float(value)
-        except ValueError:
-            raise OptionError(f"--thresholds is like kink=1,short=2, not {item!r}") from None
+    given = opt.numbers_of(text, "--thresholds is like kink=1,short=2")
+    found = {name.replace("-", "_"): value for name, value in given.items()}
+    if unknown := [name for name in given if name.replace("-", "_") not in names]:
+        raise OptionError(f"--thresholds has no {unknown[0]!r}: there are {', '.join(names)}")
     if corner_angle is not None:
         found["corner_angle"] = corner_angle
     return Thresholds(**found)

@@ -25,8 +25,8 @@ from .check_command import check
 from .diff_command import diff
 from .groups import BareOptions, grouped, only, place, without
 from .mend_command import mend
-from .messages import RULE, UNDONE, listen, print_json, printable, progress, say, stop, watch_interruption
-from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, run_face, say_face, workplace
+from .messages import RULE, UNDONE, print_json, printable, progress, say, stop, watch_interruption
+from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, opened, run_face, workplace
 from .tables import font_lines, runs_facts, runs_table
 from .text_command import text
 
@@ -37,7 +37,6 @@ BRUSHED = "龍好"
 """Characters of the demonstration in brush faces."""
 
 app = typer.Typer(
-    help="Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps.",
     no_args_is_help=True,
     epilog=RULE,
     pretty_exceptions_enable=False,
@@ -49,7 +48,6 @@ app = typer.Typer(
 def common(version: opt.Version = False) -> None:
     """Font glyph outlines as closed C2 B-splines: SVG drawings and curvature maps."""
     gc.enable()
-    listen()
 
 
 @app.command(cls=BareOptions)
@@ -189,6 +187,7 @@ def atlas(
     subset: opt.Subset,
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     run: Annotated[opt.RunOptions, only("jobs", "quiet")],
+    instance: opt.Instance,
     out: Annotated[Path, opt.out("Write this PDF.", "FILE", parser=place)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
@@ -201,7 +200,6 @@ def atlas(
     profiles: Annotated[
         str | None, About("Add a page with κ(s) for these characters; for up to 12 glyphs, for all.")
     ] = None,
-    instance: opt.Instance = opt.FIRST,
     maps: Maps = BOTH,
 ) -> bool:
     """Draw the curvature of many glyphs as a PDF: combs on one scale, and κ(s) of chosen contours.
@@ -212,15 +210,13 @@ def atlas(
     With --axis, each glyph of a variable font has a page: combs of source and result at places of the axis, and the
     largest turn and the bending energy against it. Other axes are at --location, or at their default.
     """
-    from ..readers import open_source
     from ..runs.jobs.atlas import make_atlas
 
     if out.suffix.lower() not in (".pdf", ""):
         stop(f"--out {out}: an atlas is a PDF, and its name ends in .pdf")
     if axis is not None and (profiles is not None or maps.corner_teeth or maps.comb != "both"):
         stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
-    source = open_source(font, instance.face_index or 0, instance.place)
-    say_face(source, instance, run.quiet)
+    source = opened(font, instance, run.quiet)
     names = chosen(source, subset, run.quiet)
     profiled = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
@@ -246,7 +242,7 @@ app.command(cls=BareOptions)(mend)
 @grouped
 def view(
     font: opt.FontFile,
-    instance: Annotated[opt.Instance, only("face_index")] = opt.FIRST,
+    instance: Annotated[opt.Instance, only("face_index")],
     port: Annotated[
         int, About("Listen on this port; 0 takes any that is free.", more={"min": 0, "max": 65535, "parser": None})
     ] = 0,
@@ -254,11 +250,9 @@ def view(
 ) -> None:
     """Look at a font live: a page, for this machine only, on which sliders move and curves follow."""
     need("view")
-    from ..readers import open_source
     from ..viewer import serve
 
-    face = instance.face_index or 0
-    say_face(open_source(font, face), instance, quiet=False)
+    face = opened(font, instance, quiet=False).face_index
     serve(font, face, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
@@ -276,7 +270,6 @@ def demo(
 
     龍 and 好 are converted with the preset paper. The package's notebooks are copied to notebooks/.
     """
-    from ..readers import open_source
     from ..runs.schedule import kinds_for
     from ..runs.warm import is_kept
     from ..runs.warm import warm as warm_up
@@ -290,13 +283,12 @@ def demo(
         warm_up(run.jobs, kinds=[*kinds])
     with workplace(run.jobs, None, specs[0]) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
-            source = open_source(path)
-            say_face(source, opt.FIRST, run.quiet)
+            source = opened(path, opt.Instance(), run.quiet)
             names = source.select(text=text)
             if not names:
                 stop(f"{path} has none of {text}: give --text")
             folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
-            call = Conversion(folder, spec, subset, opt.FIRST, replace(run, resume=False))
+            call = Conversion(folder, spec, subset, opt.Instance(), replace(run, resume=False))
             undone |= run_face(source, names, call, executor).undone
             shown.append(folder)
     notebooks = out / "notebooks"

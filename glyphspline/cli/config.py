@@ -23,26 +23,19 @@ CHECK = "check"
 """The command with a table of its own, which no other command reads."""
 
 
-def names_of(options: Iterable[tuple[Iterable[str], str]]) -> dict[str, str]:
-    """The keys that options have in files, their long names without hyphens, and the names of their parameters."""
-    return {
-        flag.removeprefix("--"): name
-        for flags, name in options
-        for flag in flags
-        if flag.startswith("--") and name not in NOT_IN_FILES
-    }
-
-
-def settings(path: Path | None, names: Mapping[str, str], command: str | None = None) -> dict[str, Any]:
+def settings(path: Path | None, options: Iterable[tuple[Iterable[str], str]], command: str | None) -> dict[str, Any]:
     """Values for a command's parameters: those of the working folder's project, and over them those of ``path``.
 
     Args:
         path: a file of settings; a ``pyproject.toml`` has them in ``[tool.glyphspline]``.
-        names: parameters of the command by their keys, see :func:`names_of`. command: its name.
+        options: flags of each option, whose long names without hyphens are the keys in files, and its parameter.
+        command: its name.
 
     Raises:
         GlyphsplineError: a file cannot be read, has a key that is no option, or a value that no option can have.
     """
+    long = [(flag, name) for flags, name in options for flag in flags if flag.startswith("--")]
+    names = {flag.removeprefix("--"): name for flag, name in long if name not in NOT_IN_FILES}
     found: dict[str, Any] = {}
     limits: dict[str, float] = {}
     own = {each.name for each in fields(Thresholds)} - set(names.values()) if command == CHECK else set()

@@ -30,13 +30,13 @@ def diff(
         Path, typer.Argument(metavar="NEW", help="What it is compared with, of any of these kinds.", show_default=False)
     ],
     subset: opt.Subset,
+    instance: opt.Instance,
     report: Annotated[opt.ReportOptions, only("rows")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     tolerance: Annotated[
         float | None,
         About("Let outlines and advances differ by this, in units of OLD. Without it, 1/1000 em.", metavar="UNITS"),
     ] = None,
-    instance: opt.Instance = opt.FIRST,
     html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
 ) -> bool:
     """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
@@ -77,14 +77,12 @@ def open_both(old: Path, new: Path, instance: opt.Instance) -> tuple[Source, Sou
 
     face_index, place = instance.face_index or 0, instance.place
     sources = [open_source(path) for path in (old, new)]
-    of_faces = [source.num_faces > 1 or not face_index for source in sources]
-    of_axes = [bool(source.axes) or not place for source in sources]
-    if not any(of_faces):
+    if face_index and all(source.num_faces == 1 for source in sources):
         raise GlyphsplineError(f"no face {face_index}: both have one, counted from 0")
-    if not any(of_axes):
+    if place and not any(source.axes for source in sources):
         raise GlyphsplineError("a location is asked for, and neither is a variable font")
     for k, path in enumerate((old, new)):
-        face, where = face_index if of_faces[k] else 0, place if of_axes[k] else {}
+        face, where = face_index if sources[k].num_faces > 1 else 0, place if sources[k].axes else {}
         if face or where:
             sources[k] = open_source(path, face, where)
     return sources[0], sources[1]

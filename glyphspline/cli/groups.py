@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
 from inspect import Parameter, Signature, signature
+from math import inf
 from pathlib import Path
 from typing import Annotated, Any, TypeAlias, TypeVar, cast, get_args, get_origin, get_type_hints
 
@@ -152,7 +154,7 @@ def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:
     """The options of a dataclass and of those in it, as parameters for typer."""
     if isinstance(base, Options):
         yield from _expanded(PresetOption(), without())
-    known = {one.name: one for one in options_of(base)}
+    known = {one.name: one for one in options_of(base.__class__)}
     for one in fields(base):
         value = getattr(base, one.name)
         if shown(one.name) and is_dataclass(value):
@@ -186,30 +188,21 @@ def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Pa
     return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
-def number(text: Any) -> float:
-    """Parse a float; the error message quotes the value."""
-    try:
-        return float(text)
-    except (TypeError, ValueError):
-        raise typer.BadParameter(f"{text!r} is not a number") from None
+def _parser(kind: type[int] | type[float], what: str, least: float = -inf) -> Callable[[Any], Any]:
+    """A parser of numbers; its error message quotes the value."""
+
+    def parse(text: Any) -> Any:
+        with suppress(ValueError):
+            found = kind(str(text))  # not of a float or bool of a file
+            if not found < least:
+                return found
+        raise typer.BadParameter(f"{text!r} is not {what}")
+
+    return parse
 
 
-def whole(text: Any) -> int:
-    """Parse an integer; the error message quotes the value."""
-    try:
-        if isinstance(text, float | bool):
-            raise ValueError
-        return int(text)
-    except (TypeError, ValueError):
-        raise typer.BadParameter(f"{text!r} is not a whole number") from None
-
-
-def natural(text: Any) -> int:
-    """Parse an integer from 0 on; the error message quotes the value."""
-    found = whole(text)
-    if found < 0:
-        raise typer.BadParameter(f"{found} is below 0")
-    return found
+number, whole = _parser(float, "a number"), _parser(int, "a whole number")
+natural = _parser(int, "a whole number from 0 on", 0)
 
 
 def place(text: Any) -> Path:

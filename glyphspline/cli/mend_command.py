@@ -11,13 +11,13 @@ import typer
 from ..checks.kinds import MENDED, MENDED_UNASKED
 from ..errors import OptionError
 from ..fields import WRITTEN, About
-from ..files import make_folder, write_made
+from ..files import make_folder
 from ..runs.spec import RunSpec
 from ..types import counted, rounded_up, shortened
 from . import arguments as opt
 from .check_command import thresholds_of
 from .groups import grouped, only
-from .messages import print_json, progress, say, stop
+from .messages import print_json, progress, put, say, stop
 from .running import chosen
 from .tables import plain
 
@@ -94,7 +94,7 @@ def mend(
         from ..report.mending_page import mending_page
 
         one, facts = found[0], [next(lines(found[0], dry_run))]
-        write_made(report.html, mending_page(Path(one.source).name, facts, one.changes, one.drawn).encode())
+        put(report.html, mending_page(Path(one.source).name, facts, one.changes, one.drawn))
     if run.as_json:
         print_json([one.facts() for one in found])
     for one in found:

@@ -12,13 +12,14 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from typing import Any, NoReturn
 
 import typer
 
 from ..errors import GlyphsplineError, words_of
-from ..files import write_made
+from ..files import make_place, writing
 
 DONE, UNDONE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
 
@@ -77,8 +78,10 @@ def put(path: Path, content: str | bytes) -> None:
     """
     if path == STDOUT:
         typer.echo(content, nl=isinstance(content, str) and not content.endswith("\n"))
-    else:
-        write_made(path, content.encode(errors="replace") if isinstance(content, str) else content)  # of paths
+        return
+    make_place(path)
+    with writing(path):
+        path.write_bytes(content.encode(errors="replace") if isinstance(content, str) else content)  # of paths
 
 
 class Logged(logging.Handler):
@@ -86,14 +89,11 @@ class Logged(logging.Handler):
 
     def __init__(self, level: int) -> None:
         super().__init__(level)
-        self._before: set[str] = set()
+        self._say = cache(say)
 
     def emit(self, record: logging.LogRecord) -> None:
         """Print a record as a line on standard error."""
-        line = f"{record.name.partition('.')[0]}: {record.getMessage()}"
-        if line not in self._before:
-            self._before.add(line)
-            say(line)
+        self._say(f"{record.name.partition('.')[0]}: {record.getMessage()}")
 
 
 def listen(quiet: bool = False) -> None:
@@ -116,26 +116,23 @@ def printable(text: str) -> str:
 
 
 @contextmanager
-def json_lines() -> Iterator[Any]:
-    """Progress as JSON lines on standard error, one a second at most."""
-    last = 0.0
-
-    def observe(done: int, total: int, failed: int) -> None:
-        nonlocal last
-        now = time.monotonic()
-        if now - last >= 1 or done == total:
-            last = now
-            say(json.dumps({"done": done, "total": total, "failed": failed}))
-
-    yield observe
-
-
-@contextmanager
-def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
+def progress(quiet: bool, *, compiling: bool = False, json_log: bool = False) -> Iterator[Any]:
     """Show a bar of glyphs, or of kinds of work that are compiled, on standard error if that is a terminal.
 
-    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar.
+    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar. With
+    ``json_log`` these are JSON lines instead, one a second at most.
     """
+    if json_log:
+        last = 0.0
+
+        def log(done: int, total: int, failed: int) -> None:
+            nonlocal last
+            if time.monotonic() - last >= 1 or done == total:
+                last = time.monotonic()
+                say(json.dumps({"done": done, "total": total, "failed": failed}))
+
+        yield log
+        return
     if quiet or not sys.stderr.isatty():
         yield None
         return
@@ -144,11 +141,9 @@ def progress(quiet: bool, compiling: bool = False) -> Iterator[Any]:
 
     columns: list[Any] = [rich.BarColumn(), rich.MofNCompleteColumn()]
     if compiling:
-        words = rich.TextColumn("compiling"), rich.TextColumn("kinds of work")
-        columns = [words[0], *columns, words[1], rich.TimeElapsedColumn()]
+        columns = ["compiling", *columns, "kinds of work", rich.TimeElapsedColumn()]
     else:
-        rate, failures = rich.TextColumn("{task.fields[rate]:.0f}/s"), rich.TextColumn("{task.fields[failed]} failed")
-        columns += [rate, rich.TimeRemainingColumn(), failures]
+        columns += ["{task.fields[rate]:.0f}/s", rich.TimeRemainingColumn(), "{task.fields[failed]} failed"]
     bar = rich.Progress(*columns, console=Console(stderr=True), transient=True)
     task = bar.add_task("", total=None, rate=0.0, failed=0)
 

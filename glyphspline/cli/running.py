@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING
 from ..errors import GlyphsplineError, OutputError
 from ..types import listed
 from . import arguments as opt
-from .messages import json_lines, print_json, progress, say, stop
+from .messages import print_json, progress, say, stop
 from .tables import FontRun, with_character
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-    from ..readers import Selection, Source
+    from ..readers import AnySource, Selection, Source
     from ..runs.spec import RunSpec
     from ..runs.summary import Summary
 
@@ -57,39 +57,34 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
     from ..runs.font_search import faces_of
     from ..runs.summary import Summary
 
-    face_index, folders = call.instance.face_index, [call.out]
+    face_index, folders, location = call.instance.face_index, [call.out], call.instance.place
     if alone:
         face_index = face_index or 0
     else:
         if not call.subset.is_given:
             call = replace(call, subset=opt.Subset(all_glyphs=True))
         folders = [call.out / name for name in folders_for(fonts)]
-    location = call.instance.place
+    quiet = call.run.quiet or call.run.json_log
     runs: list[FontRun] = []
     with nullcontext() if alone else locked(call.out):
         for font, folder in zip(fonts, folders, strict=True):
             try:
                 for source in faces_of(font, location, face_index):
-                    runs.append(convert_face(source, str(font), replace(call, out=folder), executor, alone))
+                    name, out = str(font), folder
+                    if alone:
+                        say_face(source, call.instance, quiet)
+                    elif source.num_faces > 1:
+                        name, out = f"{font}, face {source.face_index}", folder / f"face-{source.face_index}"
+                    shown = None if alone else name
+                    names = chosen(source, call.subset, call.run.quiet, shown)
+                    runs.append(FontRun(name, out, run_face(source, names, replace(call, out=out), executor, shown)))
             except GlyphsplineError as error:
                 if alone or isinstance(error, OutputError):
                     raise
-                if call.run.quiet or call.run.json_log:  # or else it is below the table
+                if quiet:  # or else it is below the table
                     say(str(error))
                 runs.append(FontRun(str(font), folder, Summary(), str(error)))
     return runs
-
-
-def convert_face(source: Source, name: str, call: Conversion, executor: Executor, alone: bool) -> FontRun:
-    """Convert one face of the font called ``name``; those of a collection go to a folder each unless it is alone."""
-    if source.num_faces > 1 and not alone:
-        name = f"{name}, face {source.face_index}"
-        call = replace(call, out=call.out / f"face-{source.face_index}")
-    if alone:
-        say_face(source, call.instance, call.run.quiet or call.run.json_log)
-    names = chosen(source, call.subset, call.run.quiet, None if alone else name)
-    summary = run_face(source, names, call, executor, None if alone else name)
-    return FontRun(name, call.out, summary)
 
 
 def chosen(source: Source, subset: opt.Subset, quiet: bool, name: str | None = None) -> Selection:
@@ -117,6 +112,15 @@ def say_face(source: Source, instance: opt.Instance, quiet: bool) -> None:
         say(f"face {source.face_index} of {source.num_faces} is taken, {name}: --face-index N takes another")
 
 
+def opened(font: Path, instance: opt.Instance, quiet: bool) -> AnySource:
+    """A font, at the face and the place that are asked for."""
+    from ..readers import open_source
+
+    source = open_source(font, instance.face_index or 0, instance.place)
+    say_face(source, instance, quiet)
+    return source
+
+
 def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None:
     """Stop if the options of a run over masters clash."""
     if bool(single.others) != bool(single.axis):
@@ -132,17 +136,14 @@ def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None
 
 def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleFonts, executor: Executor) -> bool:
     """Convert a variable font, or single fonts that become one, in all masters; whether something was not done."""
-    from ..readers import open_source
     from ..runs.jobs.masters import convert_font_masters
 
     if len(fonts) != 1:
         stop("--masters takes one font")
     run = call.run
-    sources = [open_source(font, call.instance.face_index or 0) for font in (*fonts, *(single.others or ()))]
-    for source in sources:
-        say_face(source, call.instance, run.quiet)
+    sources = [opened(font, call.instance, run.quiet) for font in (*fonts, *(single.others or ()))]
     names = chosen(sources[0], call.subset, run.quiet)
-    with json_lines() if run.json_log else progress(run.quiet) as observer:
+    with progress(run.quiet, json_log=run.json_log) as observer:
         summary = convert_font_masters(
             sources, names, call.out, call.spec, executor, axis=single.axis, restart=not run.resume, observer=observer
         )
@@ -165,7 +166,7 @@ def run_face(
     from ..runs.jobs.convert import convert_font
 
     run, out = call.run, call.out
-    with json_lines() if run.json_log else progress(run.quiet) as observer:
+    with progress(run.quiet, json_log=run.json_log) as observer:
         summary = convert_font(
             source, names, out, call.spec, executor=executor, restart=not run.resume, observer=observer
         )

@@ -18,7 +18,7 @@ from ..writers.settings import Appearance, Maps, Settings, paper_length
 from . import arguments as opt
 from .groups import grouped, only, without
 from .messages import put, say
-from .running import say_face
+from .running import opened
 
 if TYPE_CHECKING:
     from ..readers import AnySource
@@ -55,10 +55,11 @@ def text(
     maps: Maps,
     drawings: opt.DrawingOptions,
     run: Annotated[opt.RunOptions, only("config", "quiet")],
+    *,
     words: Annotated[
         str | None, typer.Argument(metavar="[TEXT]", help="Text to set; - is standard input.", show_default=False)
     ] = None,
-    instance: opt.Instance = opt.FIRST,
+    instance: opt.Instance,
 ) -> bool:
     """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
 
@@ -70,13 +71,11 @@ def text(
     names = tuple(name for _, name in files)
     # First: the worker gets ready while the text is laid out.
     with workers(1, kinds=kinds_for(options, names), expected=1) as executor:
-        from ..readers import open_source
         from ..runs.jobs.text import TextJob, draw
         from ..typesetting.placed import LEFT_OUT
 
         content = words_of(words, lines.text_file)
-        source = open_source(font, instance.face_index or 0, instance.place)
-        say_face(source, instance, run.quiet)
+        source = opened(font, instance, run.quiet)
         em, settings = source.metrics.units_per_em, replace(settings, look=sized(settings.look, lines, source))
         look = settings.look
         curve = curve_of(lines, along, em, look)

@@ -23,8 +23,7 @@ def comparison_page(heading: str, facts: Sequence[str], drawn: Sequence[Drawn], 
         heading: its title. facts: sentences below it. drawn: glyphs in order. tolerance: in units of the old em.
     """
     return page_of(
-        "comparison.html", ("theme.css", "comparison.css"), heading,
-        facts="".join([f"<p>{text(line)}</p>" for line in facts]),
+        "comparison.html", ("theme.css", "comparison.css"), heading, facts=facts,
         cards="\n".join([card(*each, tolerance) for each in drawn]),
     )  # fmt: skip
 

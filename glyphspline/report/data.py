@@ -79,12 +79,8 @@ def glyph_text(
     """
     links = {name: path for name, path in files.items() if name != FOLDER}
     known = [{name: value for name, value in contour.items() if value is not None} for contour in contours]
-    parts = ["glyphsplineData({"]
-    for name, data in drawing.items():
-        parts.append(f'"{name}":"{data}",')
-    parts.append(f'"files":{as_json(links)},"contours":{as_json(known)}')
-    parts.append(f',"masters":{as_json(masters)}}});\n' if masters else "});\n")
-    return "".join(parts).encode()
+    data = {**drawing, "files": links, "contours": known, **({"masters": masters} if masters else {})}
+    return script(data).encode()
 
 
 def along_axes(result: MastersResult) -> dict[str, Any]:

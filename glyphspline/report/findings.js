@@ -7,15 +7,13 @@
   const at = (id) => document.getElementById(id);
   const NEAR = 0.07, FAR = 0.6; // half the width of what is shown around a place, in em: at least, at most
   const CLOSE = 6; // times the length of a very short segment, which is shown closer than others
-  const CARDS = 120, ROWS = 300; // at a time
   const ON_SEGMENT = new Set(["inflection", "straight", "slanted", "extremum", "short", "handles", "lump", "retracted"]); // it is drawn over
 
-  const rows = setup.rows.map(([font, glyph, gid, kind, contour, segment, x, y, sentence, location, outline, score]) => ({
+  const rows = setup.rows.map(([font, glyph, gid, kind, contour, segment, x, y, sentence, location, drawing, score]) => ({
     font: setup.fonts[font], fontNumber: font, glyph, gid, kindNumber: kind, kind: setup.kinds[kind][0], level: setup.kinds[kind][1],
-    contour, segment, x, y, sentence, location, outline, score,
+    contour, segment, x, y, sentence, location, drawing, score,
   }));
   const several = setup.fonts.length > 1, located = rows.some((row) => row.location);
-  const point = (row) => `${Math.round(row.x)}, ${Math.round(row.y)}`.replaceAll("-", "\u2212");
 
   const shapes = new Map(); // contours of an outline, by its number
   const contoursOf = (number) => {
@@ -28,9 +26,7 @@
     const em = row.font.em, piece = ON_SEGMENT.has(row.kind) ? contours[row.contour]?.[row.segment] : null;
     const around = whole ? contours.flat(2) : row.kind === "direction" ? (contours[row.contour] ?? []).flat() : piece ?? [];
     if (!around.length) return [row.x, -row.y, NEAR * em];
-    const xs = around.map(([x]) => x), ys = around.map(([, y]) => y);
-    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-    const half = 0.6 * Math.max(right - left, bottom - top);
+    const [left, right, top, bottom] = GS.ends(around), half = 0.6 * Math.max(right - left, bottom - top);
     if (row.kind === "short" && !whole) return [(left + right) / 2, (top + bottom) / 2, Math.min(NEAR * em, CLOSE * Math.max(half, em / 1000))];
     if (whole || row.kind === "direction") return [(left + right) / 2, (top + bottom) / 2, Math.max(half, NEAR * em)];
     const size = Math.min(FAR * em, Math.max(NEAR * em, half)); // a long segment is shown near its place
@@ -40,14 +36,14 @@
   const bezier = (p) => `M${p[0].join(" ")}${p.length === 2 ? "L" : p.length === 3 ? "Q" : "C"}${p.slice(1).flat().join(" ")}`;
 
   const draw = (card, row) => {
-    const contours = contoursOf(row.outline), whole = card.classList.contains("whole"), em = row.font.em;
+    const contours = contoursOf(row.drawing), whole = card.classList.contains("whole"), em = row.font.em;
     const frame = view(row, contours, whole), [x, y, half] = frame;
     const picture = card.querySelector("svg"), scale = GS.scaleNear(contours, em, frame), pieces = contours.flat();
     const handles = GS.handles(pieces);
     const found = ON_SEGMENT.has(row.kind) ? contours[row.contour]?.[row.segment] : null;
-    picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
+    GS.showNear(picture, x, y, half);
     picture.replaceChildren(
-      GS.svg("path", { class: "source", d: setup.outlines[row.outline] }),
+      GS.svg("path", { class: "source", d: setup.outlines[row.drawing] }),
       ...(scale > 0 ? [GS.comb(contours, em, scale, { name: "source-comb", gain: Math.min(6, half / (0.09 * em)) })] : []),
       GS.svg("path", { class: "control", d: handles.map(([a, b]) => GS.join(a, b)).join("") }),
       GS.dots(handles.map(([, b]) => b), "handles"),
@@ -70,61 +66,16 @@
       .map(([x, y, dx, dy]) => GS.join([x, y], [x - dx, y - dy])).join("");
   };
 
-  const drawn = new WeakSet();
-  const watcher = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries) {
-      if (!isIntersecting || drawn.has(target)) continue;
-      drawn.add(target);
-      draw(target, target.row);
-    }
-  }, { rootMargin: "400px" });
-
-  const kindOf = (row) => GS.element("span", { class: `kind ${row.level}` }, row.kind);
-
-  const cardOf = (row) => {
-    const picture = GS.svg("svg", { "aria-hidden": "true" });
-    const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` }, picture);
-    const lines = [`contour ${row.contour}, segment ${row.segment}, at ${point(row)}`, row.location, several ? row.font.name : ""];
-    const card = GS.element("figure", { class: "card", role: "listitem" }, button, GS.element("figcaption", {},
-      GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row), ` score ${row.score}`), GS.element("div", {}, row.sentence),
-      ...lines.filter(Boolean).map((line) => GS.element("p", {}, line)), GS.element("p", { class: "comb-scale" })));
-    card.row = row;
-    button.addEventListener("click", () => { card.classList.toggle("whole"); draw(card, row); });
-    watcher.observe(card);
-    return card;
-  };
-
-  const HEADS = ["glyph", "score", "level", "kind", "contour", "segment", "point", "finding", ...(located ? ["location"] : []), ...(several ? ["font"] : [])];
-  const NUMERIC = new Set(["score", "contour", "segment", "point"]);
-  at("head").append(...HEADS.map((name) => GS.element("th", { scope: "col" }, name)));
-  const lineOf = (row) => {
-    const cells = { glyph: row.glyph, score: `${row.score}`, level: row.level, kind: kindOf(row), contour: `${row.contour}`, segment: `${row.segment}`, point: point(row),
-      finding: row.sentence, location: row.location, font: row.font.name };
-    return GS.element("tr", {}, ...HEADS.map((name) => GS.element("td", NUMERIC.has(name) ? { class: "number" } : {}, cells[name])));
-  };
-
-  const fillCards = GS.filled(at("cards"), at("more-cards"), CARDS, cardOf, "drawings");
-  const fillRows = GS.filled(at("rows"), at("more-rows"), ROWS, lineOf, "lines");
-
-  const boxes = [...document.querySelectorAll("[data-kind]")];
-  const update = () => {
-    const kinds = new Set(boxes.filter((box) => box.checked).map((box) => +box.dataset.kind)), words = at("words").value.trim().toLowerCase();
-    const chosen = rows.filter((row) => kinds.has(row.kindNumber) && (at("font").value === "" || row.fontNumber === +at("font").value)
-      && (!words || row.glyph.toLowerCase().includes(words)));
-    fillCards(chosen.filter((row) => row.outline >= 0));
-    fillRows(chosen);
-    at("none").hidden = chosen.length > 0;
-    at("count").textContent = chosen.length === rows.length ? `${rows.length} findings` : `${chosen.length} of ${rows.length} findings`;
-  };
-
   setup.fonts.forEach((font, k) => at("font").append(new Option(font.name, String(k))));
   at("font").closest("label").hidden = !several;
   at("left").textContent = setup.left ? `${setup.left} more are left out here; CSV and JSON have all.` : "";
-  document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
-  const choose = () => { update(); scrollTo(0, 0); };
-  for (const item of [...boxes, at("font")]) item.addEventListener("change", choose);
-  let pause;
-  at("words").addEventListener("input", () => { clearTimeout(pause); pause = setTimeout(choose, 120); });
-  update();
-  document.body.dataset.ready = "yes";
+  const page = GS.places(rows, {
+    size: 120, draw, title: (row) => `score ${row.score}`, caption: (row) => [row.sentence, row.location, several ? row.font.name : ""],
+    heads: ["glyph", "score", "level", "kind", "contour", "segment", "point", "finding", ...(located ? ["location"] : []), ...(several ? ["font"] : [])],
+    numeric: ["score", "contour", "segment", "point"],
+    cells: (row) => ({ score: `${row.score}`, level: row.level, finding: row.sentence, location: row.location, font: row.font.name }),
+    isChosen: (row) => at("font").value === "" || row.fontNumber === +at("font").value,
+    said: ({ length }) => [length === rows.length ? `${length} findings` : `${length} of ${rows.length} findings`, !length],
+  });
+  at("font").addEventListener("change", page.choose);
 })();

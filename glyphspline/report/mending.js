@@ -7,10 +7,8 @@
   const at = (id) => document.getElementById(id);
   const NEAR = 0.05; // half the width of what is shown around a place, in em, at least
   const AT_JOINTS = new Set(["kink", "unlevel", "repeated", "jump"]); // their handles are shown, of others the segment
-  const CARDS = 60, ROWS = 300; // at a time
   const rows = setup.rows.map(([glyph, kind, contour, segment, x, y, before, after, moved, curves, why, drawing, axis, step]) => (
-    { glyph, kind: setup.kinds[kind], kindNumber: kind, contour, segment, x, y, before, after, moved, curves, why, drawing, axis, step }));
-  const point = (row) => `${Math.round(row.x)}, ${Math.round(row.y)}`.replaceAll("-", "\u2212");
+    { glyph, kind: setup.kinds[kind], kindNumber: kind, level: "", contour, segment, x, y, before, after, moved, curves, why, drawing, axis, step }));
 
   /** Where on the axes a card is: the number of an axis of its drawing and a step of it, or null at the default. */
   const placeOf = (row) => {
@@ -25,21 +23,20 @@
     return GS.mixed(drawing[side], weights);
   };
 
-  const draw = (card) => {
-    const { row } = card, drawing = setup.drawings[row.drawing], place = placeOf(row), em = drawing.em;
+  const draw = (card, row) => {
+    const drawing = setup.drawings[row.drawing], place = placeOf(row), em = drawing.em;
     const old = contoursOf(drawing, "old", place), now = contoursOf(drawing, "new", place);
     const whole = card.classList.contains("whole"), own = old[row.contour], m = own.length;
     const joint = AT_JOINTS.has(row.kind) ? [own[(row.segment + m - 1) % m].slice(-2), own[row.segment].slice(0, 2)].flat() : own[row.segment];
     const around = whole ? old.flat(2) : joint;
-    const xs = around.map(([x]) => x), ys = around.map(([, y]) => y);
-    const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
+    const [left, right, top, bottom] = GS.ends(around);
     const half = Math.max(NEAR * em, 0.8 * Math.max(right - left, bottom - top)), x = (left + right) / 2, y = (top + bottom) / 2;
     const picture = card.querySelector("svg"), scale = GS.scaleNear(old, em, [x, y, half]), gain = Math.min(2, half / (0.09 * em));
     const combs = scale > 0 ? [[old, "source-comb"], [now, "comb"]].map(([of, name]) => GS.comb(of, em, scale, { name, gain })) : [];
     const same = old.flat(2).length === now.flat(2).length ? old.flat(2).map((p, k) => [p, now.flat(2)[k]]) : [];
     const moves = same.filter(([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]) > 1e-3);
     const handles = (of, name) => GS.svg("path", { class: name, d: GS.handles(of.flat()).map(([a, b]) => GS.join(a, b)).join("") });
-    picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
+    GS.showNear(picture, x, y, half);
     picture.replaceChildren(
       GS.svg("path", { class: "source", d: GS.pathData(old) }), GS.svg("path", { class: "result", d: GS.pathData(now) }), ...combs,
       handles(old, "handle-before"), handles(now, "handle-after"), GS.dots([own[row.segment][0]], "mark"),
@@ -51,50 +48,22 @@
     card.querySelector(".comb-scale").textContent = [where, teeth].filter(Boolean).join("; ");
   };
 
-  const visible = new Set();
-  const watcher = new IntersectionObserver((entries) => {
-    for (const { target, isIntersecting } of entries) {
-      if (isIntersecting) { visible.add(target); draw(target); } else visible.delete(target);
-    }
-  }, { rootMargin: "300px" });
-
-  const kindOf = (row) => GS.element("span", { class: "kind" }, row.kind);
   const result = (row) => (row.why ? "left" : row.after || "gone");
-  const cardOf = (row) => {
-    const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` }, GS.svg("svg", { "aria-hidden": "true" }));
-    const card = GS.element("figure", { class: "card", role: "listitem" }, button, GS.element("figcaption", {},
-      GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row), ` ${row.before} → ${result(row)}`),
-      GS.element("div", {}, `points moved by ${row.moved}, curves by ${row.curves}`),
-      GS.element("p", {}, `contour ${row.contour}, segment ${row.segment}, at ${point(row)}`), GS.element("p", { class: "comb-scale" })));
-    card.row = row;
-    button.addEventListener("click", () => { card.classList.toggle("whole"); draw(card); });
-    watcher.observe(card);
-    return card;
-  };
-
-  const HEADS = ["glyph", "kind", "contour", "segment", "point", "before", "after", "points moved", "curves moved", "why left"];
-  at("head").append(...HEADS.map((name) => GS.element("th", { scope: "col" }, name)));
-  const lineOf = (row) => GS.element("tr", {}, ...[row.glyph, kindOf(row), `${row.contour}`, `${row.segment}`, point(row), row.before, result(row), row.moved, row.curves, row.why]
-    .map((cell, k) => GS.element("td", k > 1 && k < 9 ? { class: "number" } : {}, cell)));
-  const fillCards = GS.filled(at("cards"), at("more-cards"), CARDS, (row) => cardOf(row), "drawings");
-  const fillRows = GS.filled(at("rows"), at("more-rows"), ROWS, lineOf, "lines");
-
-  const boxes = [...document.querySelectorAll("[data-kind]")];
-  const update = () => {
-    const kinds = new Set(boxes.filter((box) => box.checked).map((box) => +box.dataset.kind)), words = at("words").value.trim().toLowerCase();
-    const chosen = rows.filter((row) => kinds.has(row.kindNumber) && (!words || row.glyph.toLowerCase().includes(words)));
-    visible.clear();
-    fillCards(chosen.filter((row) => row.drawing >= 0));
-    fillRows(chosen);
-    const mended = chosen.filter((row) => !row.why).length;
-    at("none").hidden = mended > 0;
-    at("count").textContent = `${mended} of ${chosen.length} findings mended`;
-  };
+  const page = GS.places(rows, {
+    size: 60, draw, title: (row) => `${row.before} → ${result(row)}`, caption: (row) => [`points moved by ${row.moved}, curves by ${row.curves}`],
+    heads: ["glyph", "kind", "contour", "segment", "point", "before", "after", "points moved", "curves moved", "why left"],
+    numeric: ["contour", "segment", "point", "before", "after", "points moved", "curves moved"],
+    cells: (row) => ({ before: row.before, after: result(row), "points moved": row.moved, "curves moved": row.curves, "why left": row.why }),
+    said: (chosen) => {
+      const mended = chosen.filter((row) => !row.why).length;
+      return [`${mended} of ${chosen.length} findings mended`, !mended];
+    },
+  });
 
   const moved = () => {
     const axis = setup.axes[+at("axis").value];
     if (axis) at("value").textContent = at("worst").checked ? "" : `${axis.tag} ${GS.number(axis.values[+at("place").value])}`;
-    visible.forEach(draw);
+    page.redraw();
   };
   const chosenAxis = () => {
     const axis = setup.axes[+at("axis").value];
@@ -109,11 +78,5 @@
     at("axis").addEventListener("change", () => { chosenAxis(); at("worst").checked = false; moved(); });
     at("worst").addEventListener("change", moved);
   }
-  document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
-  boxes.forEach((box) => box.addEventListener("change", update));
-  let pause;
-  at("words").addEventListener("input", () => { clearTimeout(pause); pause = setTimeout(update, 120); });
-  update();
   moved();
-  document.body.dataset.ready = "yes";
 })();

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -16,9 +15,8 @@ from ..mending.state import Change
 from ..outlines.masters import DesignAxis, Masters
 from ..types import FloatArray, rounded_up
 from ..writers.svg.comb import palette
-from ..writers.svg.document import text
 from .data import PRECISION, contours_in
-from .pages import page_of
+from .pages import kind_switches, page_of
 
 DRAWN, LISTED = 500, 20_000
 """Findings with a drawing: those whose points moved most. Findings in the table."""
@@ -26,7 +24,7 @@ DRAWN, LISTED = 500, 20_000
 STEPS = 48
 """Steps of each axis on the slider."""
 
-SCRIPTS = ("page.js", "shapes.js", "mending.js")
+SCRIPTS = ("page.js", "shapes.js", "places.js", "mending.js")
 
 UNITS = {kind.name: kind.unit for kind in KINDS}
 
@@ -60,12 +58,6 @@ def mending_page(
             "" if change.distance is None else f"{rounded_up(change.distance, 3):g}",
             left_words(change), number, *worst,
         ])  # fmt: skip
-    counts = Counter(change.kind for change in ordered)
-    switches = "".join(
-        f'<label><input type="checkbox" data-kind="{k}" checked><i></i>{escape(kind)} '
-        f"<span>{counts[kind]}</span></label>"
-        for k, kind in enumerate(kinds)
-    )
     setup = {
         "kinds": kinds, "rows": rows, "drawings": drawings, "palette": palette(),
         "axes": [
@@ -76,10 +68,12 @@ def mending_page(
             for axis, values in zip(axes, places, strict=True)
         ],
     }  # fmt: skip
-    sentences = "".join([f"<p>{text(line)}</p>" for line in facts])
+    switches = kind_switches(
+        [(k, kind, "") for k, kind in enumerate(kinds)], Counter(change.kind for change in ordered)
+    )
     return page_of(
-        "mending.html", ("theme.css", "findings.css", "mending.css"), heading, SCRIPTS, setup, kinds=switches,
-        facts=sentences,
+        "mending.html", ("theme.css", "findings.css", "mending.css"), heading, SCRIPTS, setup, facts=facts,
+        kinds=switches,
     )  # fmt: skip
 
 
@@ -91,20 +85,15 @@ def positions(axis: DesignAxis) -> FloatArray:
 
 def weights_along(masters: Masters, places: Sequence[FloatArray]) -> list[FloatArray]:
     """(v, K) weights of the masters at the values of each axis, the others at their defaults."""
-    found = []
-    for axis, values in zip(masters.axes, places, strict=True):
-        at = [masters.normalised({axis.tag: float(value)}) for value in values]
-        found.append(masters.weights_at(np.array(at)))
-    return found
+    along = zip(masters.axes, places, strict=True)
+    return [np.array([masters.weights({axis.tag: float(value)}) for value in values]) for axis, values in along]
 
 
 def drawing(old: Masters, new: Masters, places: Sequence[FloatArray]) -> dict[str, Any]:
     """A glyph before and after, in all masters, and their weights along each axis."""
-    sides = {
-        name: contours_in(np.eye(len(masters)), masters.contours) for name, masters in (("old", old), ("new", new))
-    }
+    sides = (contours_in(np.eye(len(masters)), masters.contours) for masters in (old, new))
     weights = [np.round(each, PRECISION + 3).tolist() for each in weights_along(old, places)]
-    return {"em": old.metrics.units_per_em, **sides, "weights": weights}
+    return {"em": old.metrics.units_per_em, **dict(zip(("old", "new"), sides, strict=True)), "weights": weights}
 
 
 def worst_place(old: Masters, change: Change, places: Sequence[FloatArray]) -> tuple[int, int]:

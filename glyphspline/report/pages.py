@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
 from importlib.resources import files
 from string import Template
@@ -21,6 +21,7 @@ def page_of(
     setup: Any = None,
     *,
     loads: bool = False,
+    facts: Sequence[str] = (),
     **parts: str,
 ) -> str:
     """A page as HTML. Nothing runs in it but its scripts, by their hash.
@@ -29,7 +30,8 @@ def page_of(
         template: file of this package with the page's body.
         styles, scripts: files of this package, in the order of their dependencies.
         heading: title of the page, as text. setup: data that the scripts read from the element ``setup``.
-        loads: whether it loads scripts and drawings that lie beside it. parts: what else the template has, as HTML.
+        loads: whether it loads scripts and drawings that lie beside it. facts: sentences of the template, as text.
+        parts: what else it has, as HTML.
     """
     script = "".join(package_text(name) for name in scripts)
     beside = ["'self'", "file:"] * loads
@@ -42,8 +44,20 @@ def page_of(
     return Template(package_text("page.html")).substitute(
         policy="".join(f" {what} {' '.join(sources)};" for what, sources in allowed.items() if sources),
         heading=text(heading), style="".join(package_text(name) for name in styles),
-        body=Template(package_text(template)).substitute(heading=text(heading), **parts), scripts=run,
+        body=Template(package_text(template)).substitute(
+            heading=text(heading), facts="".join([f"<p>{text(line)}</p>" for line in facts]), **parts
+        ),
+        scripts=run,
     )  # fmt: skip
+
+
+def kind_switches(kinds: Iterable[tuple[int, str, str]], counts: Mapping[str, int]) -> str:
+    """A switch for each kind of finding as HTML, from its number in the page's data, its name and its class."""
+    return "".join(
+        f'<label{of_class}><input type="checkbox" data-kind="{number}" checked><i></i>{text(name)} '
+        f"<span>{counts[name]}</span></label>"
+        for number, name, of_class in kinds
+    )
 
 
 def package_text(name: str) -> str:

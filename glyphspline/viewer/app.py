@@ -1,6 +1,6 @@
 """The viewer's server, on the loopback interface only: the page and its files, the font, and what the page asks for.
 
-A page elsewhere must not read a font through the visitor's browser: :class:`Guard` answers only pages of this server.
+A page elsewhere must not read a font through the visitor's browser: :func:`guard` answers only pages of this server.
 """
 
 from __future__ import annotations
@@ -8,21 +8,21 @@ from __future__ import annotations
 import json
 import socket
 import webbrowser
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from contextlib import closing
 from dataclasses import asdict, replace
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import Headers, MutableHeaders
 from starlette.middleware import Middleware
+from starlette.middleware.base import BaseHTTPMiddleware, RequestResponseEndpoint
 from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from .. import compiled
 from ..errors import GlyphsplineError
@@ -62,45 +62,23 @@ HEADERS = {
 }
 
 
-class Guard:
-    """Answers only requests whose ``Host`` is one of ``hosts`` and whose ``Origin``, if any, is a page there.
+async def guard(hosts: Collection[str], request: Request, answer: RequestResponseEndpoint) -> Response:
+    """Answer a request, or refuse it unless its ``Host`` is one of ``hosts`` and its ``Origin``, if any, a page there.
 
     Checking the host prevents DNS rebinding: a foreign name that resolves to this machine.
     """
-
-    def __init__(self, app: ASGIApp, hosts: Iterable[str]) -> None:
-        self.app = app
-        self.hosts = frozenset(hosts)
-        self.origins = frozenset(f"http://{host}" for host in self.hosts)
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Refuse the request, or pass it on and add the headers to the response."""
-        if scope["type"] == "lifespan":
-            await self.app(scope, receive, send)
-            return
-        if scope["type"] != "http":
-            return
-        refusal = self.refusal(scope["method"], Headers(scope=scope))
-        app: ASGIApp = PlainTextResponse(refusal, status_code=403) if refusal else self.app
-
-        async def send_guarded(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                MutableHeaders(scope=message).update(HEADERS)
-            await send(message)
-
-        await app(scope, receive, send_guarded)
-
-    def refusal(self, method: str, headers: Headers) -> str | None:
-        """Why a request is refused, or None."""
-        if headers.get("host") not in self.hosts:
-            return "wrong host"
-        if "origin" in headers and headers["origin"] not in self.origins:
-            return "wrong origin"
-        if headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
-            return "asked for by another site"
-        if method == "POST" and headers.get("content-type") != "application/json":
-            return "not JSON"
-        return None
+    refusal, headers = None, request.headers
+    if headers.get("host") not in hosts:
+        refusal = "wrong host"
+    elif headers.get("origin") not in (None, *(f"http://{host}" for host in hosts)):
+        refusal = "wrong origin"
+    elif headers.get("sec-fetch-site", "none") not in ("same-origin", "none"):
+        refusal = "asked for by another site"
+    elif request.method == "POST" and headers.get("content-type") != "application/json":
+        refusal = "not JSON"
+    response = PlainTextResponse(refusal, status_code=403) if refusal else await answer(request)
+    response.headers.update(HEADERS)
+    return response
 
 
 def serve(
@@ -160,7 +138,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
         Route("/api/compiling", _answer(lambda request: {"words": compiled.progress()})),
         *(Route(f"/api/{name}", _computed(work, make), methods=["POST"]) for name, make in ANSWERS.items()),
     ]
-    return Starlette(routes=routes, middleware=[Middleware(Guard, hosts=tuple(hosts))])
+    return Starlette(routes=routes, middleware=[Middleware(BaseHTTPMiddleware, dispatch=partial(guard, tuple(hosts)))])
 
 
 def static(request: Request) -> Response:
@@ -201,8 +179,7 @@ def first_glyph(work: Work) -> str:
     mapped = [font.cmap[ord(c)] for c in FIRST if ord(c) in font.cmap]
     others = [name for name in dict.fromkeys([*font.cmap.values(), *font.glyph_names]) if name != ".notdef"]
     candidates = [*mapped, *others[:200]]
-    drawn = (name for name in candidates if work.has_ink(name))
-    return next(drawn, (candidates or font.glyph_names)[0])
+    return next(filter(work.has_ink, candidates), (candidates or font.glyph_names)[0])
 
 
 def glyph_answer(work: Work, state: State) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.checks.kinks import along_axis, places_along
 from glyphspline.checks.on_axes import by_rounding
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.writers.figures.axis_pages import (
     axis_page,

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.checks.kinks import AxisKinks, kinks_along
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.outlines.joins import joins
 from glyphspline.writers.svg.path_data import path_data
 from tests.places import FONTS

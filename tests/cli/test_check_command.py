@@ -20,7 +20,7 @@ import glyphspline as gs
 from glyphspline.checks.baseline import Baseline
 from glyphspline.checks.finding import severity
 from glyphspline.checks.kinds import KINDS
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.cli.findings import COLUMNS
 from glyphspline.report.findings_page import to_draw
 from tests.faulty_drawings import drawings, turning

@@ -18,7 +18,7 @@ from fontTools.ttLib import TTFont
 from typer.testing import CliRunner, Result
 
 import glyphspline
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.cli.groups import grouped, without
 from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
@@ -217,7 +217,7 @@ def test_a_process_of_its_own_with_workers(tmp_path: Path) -> None:
 
 
 def test_help_imports_nothing_heavy() -> None:
-    code = "import sys; from glyphspline.cli import app; from typer.testing import CliRunner; " \
+    code = "import sys; from glyphspline.cli.commands import app; from typer.testing import CliRunner; " \
            "assert CliRunner().invoke(app, ['--help']).exit_code == 0; print(*sys.modules)"  # fmt: skip
     loaded = call("-c", code).stdout.split()
     assert "glyphspline.cli" in loaded
@@ -383,7 +383,7 @@ def test_settings_that_are_none_are_refused(text: str | None, words: str, tmp_pa
         (["--margin", "0.7"], "--margin is 0 to 0.5, not 0.7"),
         (["--precision", "12"], "--precision is a whole number from 0 to 9, not 12"),
         (["--count", "2.5"], "'--count': '2.5' is not a whole number"),
-        (["--jobs", "-1"], "-1 is below 0"),
+        (["--jobs", "-1"], "-1' is not a whole number from 0 on"),
         (["--face-index", "x"], "'--face-index': 'x' is not a whole number"),
         (["--out", ""], "'--out' / '-o': it is empty"),
     ],

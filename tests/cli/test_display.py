@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.outlines.joins import joins
 from glyphspline.runs.jobs import atlas
 from glyphspline.writers.figures.atlas import overview, profile

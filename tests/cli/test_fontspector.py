@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.extras import has
 from glyphspline.fontspector import CHECK, LISTED, PROFILE, SOURCES
 from tests.places import ROOT

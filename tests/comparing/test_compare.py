@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.comparing.compare import compare_many
 from glyphspline.curves.bezier import evaluate, split
 from glyphspline.readers.svg import SvgDrawings

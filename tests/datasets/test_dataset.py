@@ -28,7 +28,7 @@ from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.datasets.card import command
 from glyphspline.datasets.plan import Plan, Task, plan_of
 from glyphspline.datasets.run import RowsJob

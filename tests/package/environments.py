@@ -37,7 +37,7 @@ if extras & {"view", "all"}:
     import glyphspline.viewer
     for name in ("viewer.html", "viewer.css", "viewer.js"):
         assert files("glyphspline.viewer").joinpath(name).read_bytes(), name
-pages = ("page.html", "findings.html", "findings.css", "findings.js", "comparison.html", "comparison.css")
+pages = ("page.html", "findings.html", "findings.css", "findings.js", "places.js", "comparison.html", "comparison.css")
 for name in ("gallery.html", "gallery.js", "theme.css", "shapes.js", "page.js", *pages):
     assert files("glyphspline.report").joinpath(name).read_bytes(), name
 assert files("glyphspline").joinpath("py.typed").is_file()

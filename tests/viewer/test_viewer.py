@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline import compiled
-from glyphspline.cli import app as shell
+from glyphspline.cli.commands import app as shell
 from glyphspline.fitting.closed_curves import History, recorded
 from glyphspline.fitting.options import PRESETS, Continuity, Effort
 from glyphspline.types import FloatArray

@@ -15,7 +15,7 @@ from matplotlib.image import imread
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.types import FloatArray
 from glyphspline.writers.figures.drawings import write_drawing
 from glyphspline.writers.settings import Appearance, Settings

@@ -22,7 +22,7 @@ from jsonschema import Draft202012Validator
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli import app
+from glyphspline.cli.commands import app
 from glyphspline.curves.bezier import evaluate
 from glyphspline.errors import GlyphsplineError, OptionError, OutputError
 from glyphspline.fitting.results import as_glyph

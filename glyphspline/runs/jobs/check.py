@@ -29,7 +29,6 @@ from ...outlines.masters import Masters
 from ...outlines.outline import Outline
 from ...readers import Source
 from ...readers.source import Location
-from ...report.findings_page import home_of
 from ...types import FloatArray, Head, IntArray
 from ..engine import Item, Job, Observer, reason, run
 from ..font_search import faces_of
@@ -396,7 +395,8 @@ def check_face(
     """
     if alone and not names:
         raise GlyphsplineError("none of the glyphs asked for is in the font")
-    face = Face(name, source.family, source.style, source if asked.drawn else None, home_of(source))
+    home = {axis.tag: axis.default for axis in source.axes} | dict(source.location)
+    face = Face(name, source.family, source.style, source if asked.drawn else None, home)
     tags = [axis.tag for axis in source.axes]
     if asked.axis is not None or (alone and asked.joints):
         try:
