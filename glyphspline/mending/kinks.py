@@ -19,7 +19,7 @@ from ..checks.segments import rounding_turns
 from ..checks.turns import joint_controls, turns_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
-from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
+from .balance import Bounds, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
 from .single import single_handles
 from .state import Change, Design, State, distances
@@ -249,7 +249,7 @@ def _least(
     If all ways are tried and there are none, the group knows what it needs.
     """
     layout = Layout(MasterContour(points, contour.degrees))
-    stretches, bounded = dict[tuple[int, ...], Stretch](), dict[tuple[object, ...], list[Bound]]()
+    stretches, bounded = dict[tuple[int, ...], Stretch](), dict[tuple[object, ...], Bounds | None]()
     for exact, own in groupby(ways, key=lambda way: way.exact):
         later = []
         for way in own:
@@ -262,13 +262,12 @@ def _least(
             if what not in bounded:
                 bounded[what] = bounds_of(stretch, group, way, design)
             bounds, most = bounded[what], SMALL * design.em / 1000 if way.small else np.inf
-            at = points.tobytes(), repr((free, way.small)).encode()
-            key = b"".join([*at, *(bound.most.tobytes() for bound in bounds)])
+            if bounds is None:
+                continue
+            key = b"".join([points.tobytes(), repr((free, way.small)).encode(), bounds.most.tobytes()])
             if key in seen:
                 continue
             seen.add(key)
-            if not bounds:
-                continue
             x = stretch.least(bounds, LOOSE * most)
             if stretch.excess(x, bounds) > HOPE:
                 group.blame(BEYOND)
@@ -291,18 +290,17 @@ def _least(
         anything = design._replace(tolerance=np.inf)
         stretch = Stretch(layout, [*stretches.values()][-1].free.tolist(), anything)
         bounds = bounds_of(stretch, group, way, design)
-        x = stretch.least(bounds, np.inf)
-        for moved in _on_grid(stretch, bounds, x, np.inf):
+        for moved in _on_grid(stretch, bounds, stretch.least(bounds, np.inf), np.inf) if bounds else ():
             if _is_mended(layout, group, moved, way.exact, design):
                 farthest = max(float(np.abs(stretch.moves(x)).max()), design.tolerance)
                 _proposal(group, first, contour, moved, design, farthest)
                 break
 
 
-def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, most: float) -> Iterator[FloatArray]:
+def _on_grid(stretch: Stretch, bounds: Bounds, x: FloatArray, most: float) -> Iterator[FloatArray]:
     """Points on the grid near the least moves, and then near those that leave more room for rounding."""
     yield stretch.places_of(stretch.on_grid(x, bounds, most))
-    tighter = [bound if bound.is_jump else bound._replace(most=TIGHTER * bound.most) for bound in bounds]
+    tighter = bounds._replace(most=np.where(bounds.is_jump[:, None], 1.0, TIGHTER) * bounds.most)
     yield stretch.places_of(stretch.on_grid(stretch.least(tighter, LOOSE * most), tighter, most))
 
 
@@ -333,8 +331,8 @@ def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, de
     return True
 
 
-def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[Bound]:
-    """What the joints of a stretch may turn, and by how much their curvature may jump."""
+def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> Bounds | None:
+    """What the joints of a stretch may turn, and their curvature jump; None where handles have no length."""
     layout, limits, found = stretch.layout, design.thresholds, []
     for joint in stretch.joints.tolist():
         around = layout.around(joint)
@@ -349,7 +347,7 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
             most = np.maximum(turns, np.radians(BESIDE))
         else:
             continue
-        found.append(Bound(joint, around, False, most, np.ones(len(at))))
+        found.append((around, False, most, np.ones(len(at))))
         if (layout.degrees[[joint - 1, joint]] == 3).all() and np.abs(np.diff(at, axis=1)).max(axis=2).min() > EXACT:
             meets = own and way.meets and joint not in group.jumps
             ends = np.abs(curvatures_at(at))  # what the larger one becomes is not less than the smaller one
@@ -357,8 +355,8 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
             most = LOOSE * np.maximum(limits.relative_jump, limits.jump / design.em / per)
             if not meets:
                 most = np.maximum(most, np.abs(jumps_at(at)) / per)
-            found.append(Bound(joint, around, True, most, per))
-    return found
+            found.append((around, True, most, per))
+    return Bounds(*map(np.array, zip(*found, strict=True))) if found else None
 
 
 def _settled(

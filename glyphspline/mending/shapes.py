@@ -17,7 +17,7 @@ from ..curves.bezier import cross
 from ..outlines.masters import MasterContour
 from ..types import FloatArray, IntArray
 from .extrema import extremum_moves, level_moves
-from .joints import SMOOTH, Move, starts_of
+from .joints import SMOOTH, Layout, Move, starts_of
 
 NEARLY = np.tan(np.radians(1.0))
 """Slope up to which a line is level in another master, too; one that is steeper anywhere is meant, and stays."""
@@ -73,14 +73,9 @@ def with_nodes(contour: MasterContour, numbers: IntArray, places: FloatArray, st
 
 def moved(contour: MasterContour, numbers: IntArray, places: FloatArray) -> MasterContour:
     """A contour after a move; a node midway between two control points of quadratics stays so, as fonts imply it."""
-    points = contour.points.copy()
+    points, at = contour.points.copy(), np.flatnonzero(Layout(contour).implied)
     points[:, numbers] = places
-    if (contour.degrees == 2).any():
-        at = starts_of(contour)[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
-        behind = (at + 1) % points.shape[1]
-        implied = (contour.points[:, at - 1] + contour.points[:, behind] == 2 * contour.points[:, at]).all(axis=(0, 2))
-        at, behind = at[implied], behind[implied]
-        points[:, at] = (points[:, at - 1] + points[:, behind]) / 2
+    points[:, at] = (points[:, at - 1] + points[:, (at + 1) % points.shape[1]]) / 2
     return MasterContour(points, contour.degrees)
 
 
