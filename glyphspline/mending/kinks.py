@@ -21,6 +21,7 @@ from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
 from .balance import Bounds, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
+from .shapes import Proposal, with_moves, with_result
 from .single import single_handles
 from .state import Change, Design, State, distances
 
@@ -82,15 +83,6 @@ WAYS = [
 
 Place = tuple[int, int]
 """Contour and segment of a finding."""
-
-
-class Proposal(NamedTuple):
-    """Points (K, N, 2) of a contour, which of them moved, how far its curves did, certified, and the largest move."""
-
-    points: FloatArray
-    moved: list[int]
-    distance: float
-    change: float
 
 
 @dataclass
@@ -279,12 +271,13 @@ def _least(
                 proposal = _proposal(group, first, contour, moved, design)
                 if proposal is None:
                     continue
-                if proposal.change <= SMALL * design.em / 1000:
+                change = float(np.hypot(*(moved - contour.points).reshape(-1, 2).T).max())
+                if change <= SMALL * design.em / 1000:
                     yield proposal
                 else:
-                    later.append(proposal)
+                    later.append((change, proposal))
                 break
-        yield from sorted(later, key=lambda each: each.change)
+        yield from [proposal for _, proposal in sorted(later, key=lambda each: each[0])]
     if ways is WAYS and group.needs is None and group.why in (*WEAK, BEYOND) and stretches:
         way = WAYS[-1]._replace(meets=group.kind == "jump")
         anything = design._replace(tolerance=np.inf)
@@ -315,8 +308,8 @@ def _proposal(
         group.needs = min(group.needs or np.inf, distance)
         group.blame(BEYOND)
         return None
-    moved = np.flatnonzero((points != old).any(axis=(0, 2))).tolist()
-    return Proposal(points, moved, distance, float(np.hypot(*(points - old).reshape(-1, 2).T).max()))
+    numbers = np.flatnonzero((points != old).any(axis=(0, 2)))
+    return Proposal(numbers, points[:, numbers], distance)
 
 
 def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, design: Design) -> bool:
@@ -365,7 +358,7 @@ def _settled(
 ) -> tuple[Masters, State]:  # fmt: skip
     """The glyph with those proposals that stand together, and what is found in it."""
     while any(group.now for group in groups):
-        trial = _with(now, groups)
+        trial = with_moves(now, [(group.contour, group.now) for group in groups if group.now])
         given_up = _far(first, trial, groups, design)
         if not given_up:
             trial, after = check(trial)
@@ -375,18 +368,6 @@ def _settled(
         if not given_up:
             return trial, after
     return now, before
-
-
-def _with(masters: Masters, groups: Sequence[Group]) -> Masters:
-    """The glyph with the proposals of all groups."""
-    contours = list(masters.contours)
-    for group in groups:
-        if group.now is not None:
-            own = contours[group.contour]
-            points = own.points.copy()
-            points[:, group.now.moved] = group.now.points[:, group.now.moved]
-            contours[group.contour] = MasterContour(points, own.degrees)
-    return replace(masters, contours=contours)
 
 
 def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) -> list[tuple[Group, str]]:
@@ -433,17 +414,9 @@ def _results(
     for (c, s), change in mended.items():
         old, new, count = layouts[c].points, now.contours[c].points, layouts[c].points.shape[1]
         reach = [(int(layouts[c].starts[s]) + k) % count for k in (-1, 0, 1, -2, 2, -3, 3)]
-        numbers = sorted({p for p in reach if (c, p) not in taken})
-        taken.update((c, p) for p in numbers)
-        moves = tuple(
-            (k, p, (float(old[k, p, 0]), float(old[k, p, 1])), (float(new[k, p, 0]), float(new[k, p, 1])))
-            for k in range(len(old))
-            for p in numbers
-            if (old[k, p] != new[k, p]).any()
-        )
+        numbers = np.array(sorted({p for p in reach if (c, p) not in taken}), dtype=np.int64)
+        taken.update((c, p) for p in numbers.tolist())
         turn = design.largest_turns(joint_controls(now.contours[c])[:, [s]])[0]
-        yield (c, s), replace(
-            change, after=float(turn) if change.kind == "kink" else None, moves=moves,
-            moved=max([float(np.hypot(u - x, v - y)) for _, _, (x, y), (u, v) in moves], default=0.0),
-            distance=float(max(bounds[c][s - 1], bounds[c][s])),
-        )  # fmt: skip
+        change = replace(change, after=float(turn) if change.kind == "kink" else None)
+        far = float(max(bounds[c][s - 1], bounds[c][s]))
+        yield (c, s), with_result(change, numbers, old[:, numbers], new[:, numbers], far)

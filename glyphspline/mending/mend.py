@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, overload
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,11 +19,10 @@ from ..checks.kinds import KINDS, MENDED, MENDED_UNASKED, THRESHOLDS, Thresholds
 from ..errors import OptionError, is_positive, require
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
-from ..types import FloatArray, IntArray
 from .fewer import EDITED, Edited
 from .joints import starts_of
 from .kinks import smoothed
-from .shapes import moved, shape_moves
+from .shapes import Proposal, moved, shape_moves, with_moves, with_result
 from .state import Change, Design, Into, Key, State, distances
 
 PER_EM = 1e-3
@@ -40,21 +39,13 @@ SMOOTHED = ("kink", "jump")
 
 ANYWHERE = Into()
 
+Glyph = TypeVar("Glyph", Outline, Masters)
 
-@overload
+
 def mend(
-    glyph: Outline, kinds: Collection[str] = ..., tolerance: float | None = ..., *, thresholds: Thresholds = ...,
-    outer: int = ...,
-) -> tuple[Outline, list[Change]]: ...  # fmt: skip
-@overload
-def mend(
-    glyph: Masters, kinds: Collection[str] = ..., tolerance: float | None = ..., *, thresholds: Thresholds = ...,
-    outer: int = ...,
-) -> tuple[Masters, list[Change]]: ...  # fmt: skip
-def mend(
-    glyph: Outline | Masters, kinds: Collection[str] = MENDED_UNASKED, tolerance: float | None = None, *,
+    glyph: Glyph, kinds: Collection[str] = MENDED_UNASKED, tolerance: float | None = None, *,
     thresholds: Thresholds = THRESHOLDS, outer: int = 0,
-) -> tuple[Outline | Masters, list[Change]]:  # fmt: skip
+) -> tuple[Glyph, list[Change]]:  # fmt: skip
     """Move handles, then nodes, as little as it takes so that joints meant to be smooth no longer kink.
 
     Points stay in their order, and on the grid of the source: whole units, or its decimals. Horizontal and vertical
@@ -153,7 +144,9 @@ class _Glyph:
         while True:
             if not any(fault.is_moved for fault in faults):
                 return now, before, [fault.left() for fault in faults]
-            trial, after = self.checked(_with(now, faults))
+            trial, after = self.checked(
+                with_moves(now, [(fault.change.contour, fault.tries[0]) for fault in faults if fault.is_moved])
+            )
             beyond = _beyond(self.masters, trial, faults, self.design)
             if not _advance(faults, before, after, beyond, kind):
                 return trial, after, [fault.result() for fault in faults]
@@ -231,21 +224,13 @@ def _renumbered(found: Counter[Key], contours: Sequence[Edited], are_new: bool) 
     return renumbered
 
 
-class _Try(NamedTuple):
-    """New places (K, P, 2) of points (P,), and the distance that curves move."""
-
-    numbers: IntArray
-    places: FloatArray
-    distance: float
-
-
 @dataclass
 class _Fault:
     """A finding, the moves that are left to try, and why others failed; ``old``: its contour before them."""
 
     change: Change
     old: MasterContour
-    tries: list[_Try]
+    tries: list[Proposal]
     why: str | None
     needs: float | None = None
 
@@ -258,7 +243,7 @@ class _Fault:
         if fixed is None:
             for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
                 bound = float(distances(origin, moved(contour, numbers, places), design).max())
-                fault.tries.append(_Try(numbers, places, bound))
+                fault.tries.append(Proposal(numbers, places, bound))
             if change.kind not in LIKED:
                 fault.tries.sort(key=lambda each: each.distance)
         within = [each for each in fault.tries if each.distance <= design.tolerance]
@@ -292,16 +277,7 @@ class _Fault:
         if not self.is_moved:
             return self.left()
         numbers, new, bound = self.tries[0]
-        old = self.old.points[:, numbers]
-        moved = [
-            (k, int(numbers[p]), (float(x), float(y)), (float(u), float(v)))
-            for k, (before, behind) in enumerate(zip(old, new, strict=True))
-            for p, ((x, y), (u, v)) in enumerate(zip(before, behind, strict=True))
-            if (x, y) != (u, v)
-        ]
-        return replace(
-            self.change, moved=float(np.hypot(*(new - old).reshape(-1, 2).T).max()), moves=tuple(moved), distance=bound,
-        )  # fmt: skip
+        return with_result(self.change, numbers, self.old.points[:, numbers], new, bound)
 
 
 def _advance(
@@ -327,16 +303,6 @@ def _advance(
             fault.next(why)
             given_up = True
     return given_up
-
-
-def _with(masters: Masters, faults: Sequence[_Fault]) -> Masters:
-    """The glyph with the first move of every finding."""
-    contours = list(masters.contours)
-    for fault in faults:
-        if fault.is_moved:
-            own = contours[fault.change.contour]
-            contours[fault.change.contour] = moved(own, fault.tries[0].numbers, fault.tries[0].places)
-    return replace(masters, contours=contours)
 
 
 def _beyond(old: Masters, new: Masters, faults: Sequence[_Fault], design: Design) -> set[tuple[int, int]]:
