@@ -99,9 +99,7 @@ class Quadratics:
         self._gvar.put(self._font.getGlyphID(name), tuples)
         far = max((now - before for now, before in zip(redrawn.bounds, wanted, strict=True)), default=0.0)
         bound = max(redrawn.bounds, default=0.0)
-        return StoredGlyph(
-            redrawn.contours, redrawn.inner, far, *((bound, redrawn.tally) if compared else (None, None))
-        )  # fmt: skip
+        return StoredGlyph(redrawn.inner, far, *((bound, redrawn.tally) if compared else (None, None)))
 
     def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
         """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :func:`in_quadratics`."""
