@@ -1,4 +1,4 @@
-"""Kinks and jumps of a glyph mended: which points of which joints move together, and which of their moves stand.
+"""Findings mended by moves, and which of these stand together; of kinks and jumps which points move at all.
 
 Joints near each other are one group. A group has a list of ways to move, the gentlest first; of each the least moves
 are found (:mod:`.balance`), put on the grid and certified. All groups are tried together, and those that still kink or
@@ -54,6 +54,9 @@ TURNED = 3
 REACH = 2
 """Segments from one joint of a group to the next at most."""
 
+SMOOTHED = ("kink", "jump")
+"""Kinds of joints, of which several are mended together."""
+
 
 class Way(NamedTuple):
     """How a group moves.
@@ -89,6 +92,8 @@ Place = tuple[int, int]
 class Group:
     """Joints of a contour that are mended together, and the proposals that are left to try.
 
+    Findings of other kinds than ``SMOOTHED`` are a group each.
+
     Attributes:
         kind: of the finding. values: of each joint, as found. jumps: those whose curvature jumps, as found elsewhere in
             the design space.
@@ -111,7 +116,9 @@ class Group:
 
     def next(self, why: str | None = None) -> None:
         """Give up the proposal for the next one."""
-        if why in WEAK:
+        if self.kind not in SMOOTHED:
+            self.why = self.why or why  # the first proposals are the best ones
+        elif why in WEAK:
             self.blame(why or self.why)
         else:
             self.why = why
@@ -121,43 +128,50 @@ class Group:
         """Whether a finding there may come of this group: at a joint, beside it, or of the whole contour."""
         if contour != self.contour or self.now is None:
             return False
-        return segment < 0 or any((segment - joint + 3) % segments <= 5 for joint in self.joints) or segments <= 6
+        behind = 3 if self.kind in SMOOTHED else 2
+        return segment < 0 or any((segment - joint + behind) % segments <= behind + 2 for joint in self.joints)
 
 
-def smoothed(
+def settled(
     first: Masters, now: Masters, before: State, changes: Mapping[Place, Change], kind: str, design: Design,
     check: Callable[[Masters], tuple[Masters, State]], fixed: Mapping[int, str],
+    ways: Callable[[Group, MasterContour, MasterContour, Design], Iterator[Proposal]],
 ) -> tuple[Masters, State, list[Change]]:  # fmt: skip
-    """The glyph without its kinks, or jumps, as far as that can be; what is found in it then; and what became of each.
+    """The glyph without findings of a kind, as far as that can be; what is found in it then; and what became of each.
 
     Args:
         first: the glyph as it was. now: as it is, in which ``before`` is found. changes: of the findings, by their
             contour and segment, as if all were left. kind: of the findings.
         check: says what the file makes of a glyph, and what is found in it. fixed: contours that may not change.
+        ways: gives the proposals of a group, for its contour as it was first and as it is.
     """
     layouts = {c: Layout(now.contours[c]) for c, _ in changes}
     left = dict(changes)
     for c, s in changes:
-        left[c, s] = replace(left[c, s], why=fixed.get(c) or layouts[c].obstacle(s, kind, design.em))
-    mended = dict[Place, Change]()
-    pending = groups_of(
-        [place for place, change in left.items() if change.why is None],
-        {c: len(layout.degrees) for c, layout in layouts.items()},
-    )
+        obstacle = layouts[c].obstacle(s, kind, design.em) if kind in SMOOTHED else None
+        left[c, s] = replace(left[c, s], why=fixed.get(c) or obstacle)
+    mended, places = dict[Place, Change](), [place for place, change in left.items() if change.why is None]
+    pending = [(c, [s]) for c, s in places]
+    if kind in SMOOTHED:
+        pending = groups_of(places, {c: len(layout.degrees) for c, layout in layouts.items()})
     while pending:
         groups = []
         for c, joints in pending:
             jumps = {s for s in joints if kind != "jump" and (c, s) in before.values["jump"]}
             groups.append(Group(kind, c, joints, {s: changes[c, s].before for s in joints}, jumps, iter(())))
         for group in groups:
-            group.ways = proposals(group, first.contours[group.contour], now.contours[group.contour], design)
+            group.ways = ways(group, first.contours[group.contour], now.contours[group.contour], design)
             group.next()
         now, before = _settled(first, now, groups, before, design, check)
         pending = []
         for group in groups:
             own = {(group.contour, s) for s in group.joints}
-            if group.now is not None:
+            if group.now is not None and kind in SMOOTHED:
                 mended.update({place: changes[place] for place in own})
+                continue
+            if group.now is not None:
+                (place,), (numbers, to, distance) = own, group.now
+                left[place] = with_result(left[place], numbers, layouts[place[0]].points[:, numbers], to, distance)
                 continue
             needs = group.needs if group.why == BEYOND else None
             for place in own:
@@ -371,11 +385,11 @@ def _settled(
 
 
 def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) -> list[tuple[Group, str]]:
-    """Groups at a segment that moved by more than the tolerance, as another group moved it too."""
+    """Groups at a segment that moved by more than the tolerance, as another group or the file moved it too."""
     found = []
     for contour in sorted({group.contour for group in groups if group.now}):
         own = [group for group in groups if group.contour == contour and group.now]
-        if len(own) < 2:
+        if len(own) < 2 and own[0].kind in SMOOTHED:
             continue
         bounds = distances(old.contours[contour], new.contours[contour], design)
         for segment in np.flatnonzero(~(bounds <= design.tolerance)).tolist():
