@@ -207,10 +207,7 @@ def _renumbered(found: Counter[Key], contours: Sequence[Edited], are_new: bool) 
 
 
 def shape_proposals(group: Group, first: MasterContour, contour: MasterContour, design: Design) -> Iterator[Proposal]:
-    """The moves of a finding of :mod:`.shapes` that are within the tolerance; if there are none the group knows why.
-
-    See :func:`.kinks.proposals`. In masters nodes come last.
-    """
+    """The moves of :mod:`.shapes` that are within the tolerance, as :func:`.kinks.proposals` has those of joints."""
     tries = []
     for numbers, places in shape_moves(group.kind, contour, group.joints[0], design.step):
         bound = float(distances(first, moved(contour, numbers, places), design).max())
