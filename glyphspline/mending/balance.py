@@ -15,8 +15,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks.segments import end_curvature
-from ..compiled import compiled
 from ..curves.bezier import cross
 from ..types import BoolArray, ComplexArray, FloatArray, IntArray
 from .grid import LEAST, Rounding, settle
@@ -62,18 +60,21 @@ STIFF = 0.1
 """Price of the square of a handle's move against the mean square of what curves move."""
 
 
-class Bound(NamedTuple):
-    """What one joint may turn, or its curvature jump, at L places.
+LEFT = np.array([[0.0, 1.0], [-1.0, 0.0]])
+"""Turns vectors (…, 2) to the left."""
+
+
+class Bounds(NamedTuple):
+    """What B joints may turn, or their curvatures jump, at L places.
 
     Attributes:
-        joint: number of the segment that begins there. points: (5,) numbers of the points around it: two before, the
-            node and two behind. is_jump: whether curvature is bounded, as a share of the larger one in the beginning.
-        most: (L,) absolute values in radians, or shares. per: (L,) by what values are divided: 1, or curvatures.
+        joints: (B, 5) numbers of the points around each: two before, the node and two behind.
+        is_jump: (B,) whether curvature is bounded, as a share of the larger one in the beginning.
+        most: (B, L) absolute values in radians, or shares. per: (B, L) by what values are divided: 1, or curvatures.
     """
 
-    joint: int
-    points: IntArray
-    is_jump: bool
+    joints: IntArray
+    is_jump: BoolArray
     most: FloatArray
     per: FloatArray
 
@@ -95,11 +96,6 @@ def curvatures_at(points: FloatArray) -> FloatArray:
     return np.stack([-_curvature(points[..., 2::-1, :]), _curvature(points[..., 2:, :])])
 
 
-def _turned(v: FloatArray) -> FloatArray:
-    """Vectors (…, 2) turned to the left."""
-    return np.stack([-v[..., 1], v[..., 0]], axis=-1)
-
-
 @np.errstate(divide="ignore", invalid="ignore")
 def _curvature(points: FloatArray) -> FloatArray:
     """(…,) curvature where a cubic begins, from its first three points (…, 3, 2)."""
@@ -108,86 +104,47 @@ def _curvature(points: FloatArray) -> FloatArray:
     return value
 
 
-@compiled
-def bounded(
-    points: ComplexArray, joints: IntArray, is_jump: BoolArray, weights: FloatArray, per: FloatArray
-) -> tuple[FloatArray, ComplexArray]:
-    """(B, L) turns in radians and jumps, as shares of ``per``, and (B, L, 5) the points around joints at each place.
+def bounded(points: FloatArray, of: Bounds, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(B, L) turns in radians and jumps, as shares of ``per``, and (B, L, 5, 2) the points around joints at each place.
 
     Args:
-        points: (K, N). joints: (B, 5) numbers of points. weights: (L, K) of the masters at the places. per: (B, L).
+        points: (K, N, 2). weights: (L, K) of the masters at the places.
     """
-    values, around = np.empty(per.shape), np.zeros((*per.shape, 5), dtype=np.complex128)
-    for b in range(len(joints)):
-        for m in range(len(weights)):
-            for k in range(len(points)):
-                if weights[m, k] != 0:
-                    for i in range(5):
-                        around[b, m, i] += weights[m, k] * points[k, joints[b, i]]
-            at = around[b, m]
-            if is_jump[b]:
-                value = end_curvature(at[2], at[3], at[4]) + end_curvature(at[2], at[1], at[0])
-            else:
-                both = (at[2] - at[1]).conjugate() * (at[3] - at[2])
-                value = np.arctan2(both.imag, both.real)
-            values[b, m] = value / per[b, m]
-    return values, around
+    around = np.zeros((*of.per.shape, 5, 2))
+    for own, share in zip(points[:, of.joints], weights.T, strict=True):
+        around += share[:, None, None] * own[:, None]
+    return np.where(of.is_jump[:, None], jumps_at(around), turns_at(around)) / of.per, around
 
 
-@compiled
+@np.errstate(divide="ignore", invalid="ignore")
 def slopes_of(
-    around: ComplexArray, which: IntArray, place: IntArray, scale: FloatArray, joints: IntArray, is_jump: BoolArray,
-    weights: FloatArray, spread: FloatArray,
+    around: FloatArray, which: IntArray, place: IntArray, scale: FloatArray, of: Bounds, weights: FloatArray,
+    spread: FloatArray,
 ) -> FloatArray:  # fmt: skip
     """(R, K, 2 S) derivatives of what :func:`bounded` has, by moves of points, times a scale (R,).
 
     Args:
-        around: (B, L, 5). which, place: (R,) numbers of bounds and places. spread: (N, S).
+        around: (B, L, 5, 2). which, place: (R,) numbers of bounds and places. spread: (N, S).
     """
-    count = spread.shape[1]
-    found, slope = np.zeros((len(which), weights.shape[1], 2 * count)), np.empty(5, dtype=np.complex128)
-    own = np.empty(count, dtype=np.complex128)
-    for row in range(len(which)):
-        b, at = which[row], around[which[row], place[row]]
-        slope[:] = 0
-        if is_jump[b]:
-            for way in (-1, 1):
-                a, c = at[2 + way] - at[2], at[2 + 2 * way] - at[2 + way]
-                size = abs(a)
-                by_c = 2 / 3 * 1j * a / size**3
-                by_a = -2 / 3 * 1j * c / size**3 - 3 * end_curvature(at[2], at[2 + way], at[2 + 2 * way]) * a / size**2
-                slope[2] -= by_a
-                slope[2 + way] += by_a - by_c
-                slope[2 + 2 * way] += by_c
-        else:
-            a, c = at[2] - at[1], at[3] - at[2]
-            slope[1], slope[3] = 1j * a / (a * a.conjugate()).real, 1j * c / (c * c.conjugate()).real
-            slope[2] = -slope[1] - slope[3]
-        own[:] = 0
-        for i in range(5):
-            for s in range(count):
-                own[s] += scale[row] * spread[joints[b, i], s] * slope[i]
-        for k in range(weights.shape[1]):
-            w = weights[place[row], k]
-            if w != 0:
-                for s in range(count):
-                    found[row, k, 2 * s], found[row, k, 2 * s + 1] = w * own[s].real, w * own[s].imag
+    at, jumps = around[which, place], np.zeros((len(which), 5, 2))
+    for way in (-1, 1):
+        a, c = at[:, 2 + way] - at[:, 2], at[:, 2 + 2 * way] - at[:, 2 + way]
+        size = np.hypot(*a.T)[:, None]
+        by_c = 2 / 3 * (a @ LEFT) / size**3
+        by_a = -2 / 3 * (c @ LEFT) / size**3 - 3 * _curvature(at[:, 2::way][:, :3])[:, None] * a / size**2
+        jumps[:, 2] -= by_a
+        jumps[:, 2 + way] += by_a - by_c
+        jumps[:, 2 + 2 * way] += by_c
+    first, last = (
+        each @ LEFT / np.square(each).sum(axis=1)[:, None] for each in np.diff(at[:, 1:4], axis=1).swapaxes(0, 1)
+    )
+    none = np.zeros_like(first)
+    slopes = np.where(of.is_jump[which, None, None], jumps, np.stack([none, first, -first - last, last, none], axis=1))
+    own = np.zeros((len(which), spread.shape[1], 2))
+    for number, slope in zip(of.joints[which].T, slopes.swapaxes(0, 1), strict=True):
+        own += (scale[:, None] * spread[number])[..., None] * slope[:, None]
+    found: FloatArray = weights[place][:, :, None] * own.reshape(len(own), 1, -1)
     return found
-
-
-class _Arrays(NamedTuple):
-    """Several :class:`Bound`, attribute by attribute."""
-
-    joints: IntArray
-    is_jump: BoolArray
-    most: FloatArray
-    per: FloatArray
-
-    @classmethod
-    def of(cls, bounds: Sequence[Bound]) -> _Arrays:
-        """Put them together."""
-        _, joints, is_jump, most, per = zip(*bounds, strict=True)
-        return cls(np.array(joints), np.array(is_jump), np.array(most), np.array(per))
 
 
 def _complex(points: FloatArray) -> ComplexArray:
@@ -207,7 +164,6 @@ class Stretch:
 
     def __init__(self, layout: Layout, free: Sequence[int], design: Design) -> None:
         self.layout, self.free, self.design = layout, np.array(sorted(set(free))), design
-        self.places = np.ascontiguousarray(design.places)
         count = layout.points.shape[1]
         self.spread = np.zeros((count, len(self.free)))
         self.spread[self.free, np.arange(len(self.free))] = 1.0
@@ -231,7 +187,7 @@ class Stretch:
                 basis, slopes = _BASES[degree]
                 along = slopes @ old[:, own]
                 size = np.hypot(along[..., 0], along[..., 1])[..., None]
-                across = (basis @ self.spread[own])[None, :, :, None] * _turned(along)[:, :, None]
+                across = (basis @ self.spread[own])[None, :, :, None] * (along @ LEFT)[:, :, None]
                 across = across.reshape(*across.shape[:2], -1)  # (V, T, 2 S)
                 mixed = (
                     corners[other][:, None, :, None] * across[one][:, :, None]
@@ -259,34 +215,32 @@ class Stretch:
         found: FloatArray = self.samples.reshape(len(self.samples), -1) @ x.ravel()
         return found
 
-    def excess(self, x: FloatArray, bounds: Sequence[Bound]) -> float:
-        """How many times what they may be turns, jumps and moves of samples are at most."""
-        of = _Arrays.of(bounds)
-        return self._excess(self._values(x, of)[0], self.moves(x), of.most)
+    def excess(self, x: FloatArray, bounds: Bounds) -> float:
+        """How many times what they may be turns, jumps and moves of samples are at most, after moves (K, S, 2)."""
+        return self._excess(self._values(x, bounds)[0], self.moves(x), bounds.most)
 
     def _excess(self, values: FloatArray, moves: FloatArray, most: FloatArray) -> float:
         """The same of values (B, L) and moves (R,) that are known."""
         far = np.abs(moves).max() / self.design.tolerance
         return float(max(far, (np.abs(values) / np.maximum(most, LEAST)).max(initial=0.0)))
 
-    def _values(self, x: FloatArray, of: _Arrays) -> tuple[FloatArray, ComplexArray]:
-        """(B, L) what is bounded after moves, and (B, L, 5) the points around each joint at each place."""
-        return bounded(_complex(self.places_of(x)), of.joints, of.is_jump, self.places, of.per)
+    def _values(self, x: FloatArray, bounds: Bounds) -> tuple[FloatArray, FloatArray]:
+        """See :func:`bounded`, after moves."""
+        return bounded(self.places_of(x), bounds, self.design.places)
 
-    def least(self, bounds: Sequence[Bound], most_move: float) -> FloatArray:
+    def least(self, bounds: Bounds, most_move: float) -> FloatArray:
         """(K, S, 2) the least moves that keep the bounds, and curves within the tolerance."""
         from scipy.linalg import solve_triangular
         from scipy.optimize import nnls
 
-        of, most = _Arrays.of(bounds), _Arrays.of(bounds).most
-        K, size = len(self.inverse), self.inverse.shape[1]
+        most, (K, size) = bounds.most, self.inverse.shape[:2]
         x, kept = np.zeros((K, size)), np.zeros((2, *most.shape), dtype=np.bool_)
         far, beyond = np.zeros((2, len(self.samples)), dtype=np.bool_), np.zeros((2, K, size), dtype=np.bool_)
         limit = HELD * self.design.tolerance
         sign = np.array([1.0, -1.0])
         excess = list[float]()
         for _ in range(ROUNDS):
-            values, at = self._values(x.reshape(K, -1, 2), of)
+            values, at = self._values(x.reshape(K, -1, 2), bounds)
             moves = self.moves(x)
             excess.append(self._excess(values, moves, most))
             if len(excess) > HOPELESS and min(excess) > FAR and min(excess[-2:]) > STUCK * min(excess[:-2]):
@@ -303,8 +257,8 @@ class Stretch:
                 held.reshape(2, -1)[(value.ravel()[worst] > 0).astype(np.int64), worst] = True
             # Those with sign c + sign J x >= -most, linearised, are A x >= b.
             side, which, place = np.nonzero(kept)
-            scale = sign[side] / of.per[which, place]
-            A = slopes_of(at, which, place, scale, of.joints, of.is_jump, self.places, self.spread)
+            scale = sign[side] / bounds.per[which, place]
+            A = slopes_of(at, which, place, scale, bounds, self.design.places, self.spread)
             if not (np.isfinite(A).all() and np.isfinite(values).all()):
                 break  # a handle lost its length
             b = A.reshape(len(A), -1) @ x.ravel() - sign[side] * values[which, place] - most[which, place]
@@ -331,7 +285,7 @@ class Stretch:
                 break
         return x.reshape(K, -1, 2)
 
-    def on_grid(self, x: FloatArray, bounds: Sequence[Bound], most_move: float) -> FloatArray:
+    def on_grid(self, x: FloatArray, bounds: Bounds, most_move: float) -> FloatArray:
         """(K, S, 2) moves to places on the grid so near those of ``x`` that keep the bounds best; see :mod:`.grid`."""
         layout, design = self.layout, self.design
         old = layout.points[:, self.free]
@@ -339,11 +293,10 @@ class Stretch:
         number = np.full(layout.points.shape[1], -1)
         number[self.free] = np.arange(len(self.free))
         before, best, points = map(_complex, (layout.points, self.places_of(x), self.places_of(near)))
-        of = _Arrays.of(bounds)
         contiguous = np.ascontiguousarray
         settle(points, Rounding(
             before, best, number, layout.implied, contiguous(self.frozen),
-            np.array([layout.around(joint)[1:4] for joint in self.joints.tolist()]), self.places, *of,
+            np.array([layout.around(joint)[1:4] for joint in self.joints.tolist()]), contiguous(design.places), *bounds,
             contiguous(self.cost), contiguous(self.samples), LAST * design.tolerance, design.step, most_move,
         ))  # fmt: skip
         return (points - before)[:, self.free, None].view(np.float64)

@@ -30,9 +30,6 @@ BEYOND = 1e3
 SURELY = 1 + 1e-9
 """Times the best price above which another one is higher, also after rounding."""
 
-RIGHT = 1.5
-"""Radians up to which a turn is compared with its bound by tangents."""
-
 LEAST = 1e-3
 """Radians that the grid makes good for: turns below cost nothing."""
 
@@ -45,7 +42,7 @@ class Rounding(NamedTuple):
         implied: (N,) points midway between their neighbours. frozen: (K, S, 2) coordinates that stay.
         triples: (J, 3) numbers of the points around the joints.
         weights: (L, K) of the masters at places of the design space. joints: (B, 5) points around those that are
-            bounded. is_jump, most, per: (B,), (B, L) and (B, L), see :class:`.balance.Bound`.
+            bounded. is_jump, most, per: (B,), (B, L) and (B, L), see :class:`.balance.Bounds`.
         cost: (K, 2 S, 2 S) price of moves. samples: (R, K, 2 S) by how much samples of curves move, ``limit`` at most.
         step: of the grid. most_move: of a point.
     """
@@ -164,10 +161,6 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
     of_two = without_last(base, pulls, cost)
     of_one = without_last(*of_two)
     way, change = np.zeros(6), np.zeros(6)
-    turn = own_turn(of, bounds, triple)
-    nodes = others[turn][:, 1:4].copy() if turn >= 0 else np.zeros((0, 3), dtype=np.complex128)
-    shares, steep = of.weights[acts, k], np.full(len(nodes), np.inf)
-    arms, ends = np.empty(len(nodes), dtype=np.complex128), np.empty(len(nodes), dtype=np.complex128)
     for stage in range(2):  # where they are now, and then elsewhere
         for a in first if stage else now[:1]:
             put(points, of.implied, k, triple[0], a)
@@ -181,12 +174,7 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
                 change[2], change[3] = b.real - now[1].real, b.imag - now[1].imag
                 if not price_of(way[:4], *of_two) < least * SURELY:
                     continue
-                for m in range(len(nodes)):
-                    ends[m] = nodes[m, 1] + shares[m] * b - nodes[m, 2]
-                    arms[m] = nodes[m, 1] - nodes[m, 0] + shares[m] * (b - a)
                 for c in last if stage else now[2:]:
-                    if turns_too_far(arms, ends, shares, c, steep):
-                        continue
                     way[4], way[5] = c.real - best[2].real, c.imag - best[2].imag
                     total = price_of(way, base, pulls, cost)
                     if not total < least:
@@ -196,41 +184,11 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
                     total = priced(total, least, points, of, k, bounds, acts, others, moved, slopes, change)
                     if total < least:
                         least, found[0], found[1], found[2] = total, a, b, c
-                        for m in range(len(nodes)):
-                            most = (of.most[bounds[turn], acts[m]] + LEAST) * (1 + np.sqrt(least / BEYOND)) * SURELY
-                            steep[m] = np.tan(most) if most < RIGHT else np.inf
     for n in range(3):
         put(points, of.implied, k, triple[n], found[n])
         if found[n] != now[n]:
             slide(moves, of, k, triple[n], found[n] - now[n])
     return bool((found != now).any())
-
-
-@compiled
-def own_turn(of: Rounding, bounds: IntArray, triple: IntArray) -> int:
-    """Which of the bounds is that of the turn at the joint itself, or -1."""
-    for n, b in enumerate(bounds):
-        if not of.is_jump[b] and np.all(of.joints[b, 1:4] == triple):
-            return n
-    return -1
-
-
-@compiled
-def turns_too_far(
-    arms: ComplexArray, ends: ComplexArray, shares: FloatArray, place: complex, steep: FloatArray
-) -> bool:
-    """Whether a joint turns by more than angles of such tangents anywhere, with the point behind it at a place; an
-    infinite one bounds nothing.
-
-    Args:
-        arms: (l,) from the point before to the node. ends: (l,) what is to be taken off a share of the place, for the
-            way from the node on.
-    """
-    for m in range(len(arms)):
-        both = arms[m].conjugate() * (shares[m] * place - ends[m])
-        if steep[m] < np.inf and abs(both.imag) > steep[m] * both.real:
-            return True
-    return False
 
 
 @compiled

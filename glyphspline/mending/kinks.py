@@ -1,4 +1,4 @@
-"""Kinks and jumps of a glyph mended: which points of which joints move together, and which of their moves stand.
+"""Findings mended by moves, and which of these stand together; of kinks and jumps which points move at all.
 
 Joints near each other are one group. A group has a list of ways to move, the gentlest first; of each the least moves
 are found (:mod:`.balance`), put on the grid and certified. All groups are tried together, and those that still kink or
@@ -19,8 +19,9 @@ from ..checks.segments import rounding_turns
 from ..checks.turns import joint_controls, turns_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
-from .balance import Bound, Stretch, curvatures_at, jumps_at, turns_at
+from .balance import Bounds, Stretch, curvatures_at, jumps_at, turns_at
 from .joints import EXACT, Layout
+from .shapes import Proposal, with_moves, with_result
 from .single import single_handles
 from .state import Change, Design, State, distances
 
@@ -53,6 +54,9 @@ TURNED = 3
 REACH = 2
 """Segments from one joint of a group to the next at most."""
 
+SMOOTHED = ("kink", "jump")
+"""Kinds of joints, of which several are mended together."""
+
 
 class Way(NamedTuple):
     """How a group moves.
@@ -84,18 +88,11 @@ Place = tuple[int, int]
 """Contour and segment of a finding."""
 
 
-class Proposal(NamedTuple):
-    """Points (K, N, 2) of a contour, which of them moved, how far its curves did, certified, and the largest move."""
-
-    points: FloatArray
-    moved: list[int]
-    distance: float
-    change: float
-
-
 @dataclass
 class Group:
     """Joints of a contour that are mended together, and the proposals that are left to try.
+
+    Findings of other kinds than ``SMOOTHED`` are a group each.
 
     Attributes:
         kind: of the finding. values: of each joint, as found. jumps: those whose curvature jumps, as found elsewhere in
@@ -119,7 +116,9 @@ class Group:
 
     def next(self, why: str | None = None) -> None:
         """Give up the proposal for the next one."""
-        if why in WEAK:
+        if self.kind not in SMOOTHED:
+            self.why = self.why or why  # the first proposals are the best ones
+        elif why in WEAK:
             self.blame(why or self.why)
         else:
             self.why = why
@@ -129,43 +128,50 @@ class Group:
         """Whether a finding there may come of this group: at a joint, beside it, or of the whole contour."""
         if contour != self.contour or self.now is None:
             return False
-        return segment < 0 or any((segment - joint + 3) % segments <= 5 for joint in self.joints) or segments <= 6
+        behind = 3 if self.kind in SMOOTHED else 2
+        return segment < 0 or any((segment - joint + behind) % segments <= behind + 2 for joint in self.joints)
 
 
-def smoothed(
+def settled(
     first: Masters, now: Masters, before: State, changes: Mapping[Place, Change], kind: str, design: Design,
     check: Callable[[Masters], tuple[Masters, State]], fixed: Mapping[int, str],
+    ways: Callable[[Group, MasterContour, MasterContour, Design], Iterator[Proposal]],
 ) -> tuple[Masters, State, list[Change]]:  # fmt: skip
-    """The glyph without its kinks, or jumps, as far as that can be; what is found in it then; and what became of each.
+    """The glyph without findings of a kind, as far as that can be; what is found in it then; and what became of each.
 
     Args:
         first: the glyph as it was. now: as it is, in which ``before`` is found. changes: of the findings, by their
             contour and segment, as if all were left. kind: of the findings.
         check: says what the file makes of a glyph, and what is found in it. fixed: contours that may not change.
+        ways: gives the proposals of a group, for its contour as it was first and as it is.
     """
     layouts = {c: Layout(now.contours[c]) for c, _ in changes}
     left = dict(changes)
     for c, s in changes:
-        left[c, s] = replace(left[c, s], why=fixed.get(c) or layouts[c].obstacle(s, kind, design.em))
-    mended = dict[Place, Change]()
-    pending = groups_of(
-        [place for place, change in left.items() if change.why is None],
-        {c: len(layout.degrees) for c, layout in layouts.items()},
-    )
+        obstacle = layouts[c].obstacle(s, kind, design.em) if kind in SMOOTHED else None
+        left[c, s] = replace(left[c, s], why=fixed.get(c) or obstacle)
+    mended, places = dict[Place, Change](), [place for place, change in left.items() if change.why is None]
+    pending = [(c, [s]) for c, s in places]
+    if kind in SMOOTHED:
+        pending = groups_of(places, {c: len(layout.degrees) for c, layout in layouts.items()})
     while pending:
         groups = []
         for c, joints in pending:
             jumps = {s for s in joints if kind != "jump" and (c, s) in before.values["jump"]}
             groups.append(Group(kind, c, joints, {s: changes[c, s].before for s in joints}, jumps, iter(())))
         for group in groups:
-            group.ways = proposals(group, first.contours[group.contour], now.contours[group.contour], design)
+            group.ways = ways(group, first.contours[group.contour], now.contours[group.contour], design)
             group.next()
         now, before = _settled(first, now, groups, before, design, check)
         pending = []
         for group in groups:
             own = {(group.contour, s) for s in group.joints}
-            if group.now is not None:
+            if group.now is not None and kind in SMOOTHED:
                 mended.update({place: changes[place] for place in own})
+                continue
+            if group.now is not None:
+                (place,), (numbers, to, distance) = own, group.now
+                left[place] = with_result(left[place], numbers, layouts[place[0]].points[:, numbers], to, distance)
                 continue
             needs = group.needs if group.why == BEYOND else None
             for place in own:
@@ -249,7 +255,7 @@ def _least(
     If all ways are tried and there are none, the group knows what it needs.
     """
     layout = Layout(MasterContour(points, contour.degrees))
-    stretches, bounded = dict[tuple[int, ...], Stretch](), dict[tuple[object, ...], list[Bound]]()
+    stretches, bounded = dict[tuple[int, ...], Stretch](), dict[tuple[object, ...], Bounds | None]()
     for exact, own in groupby(ways, key=lambda way: way.exact):
         later = []
         for way in own:
@@ -262,13 +268,12 @@ def _least(
             if what not in bounded:
                 bounded[what] = bounds_of(stretch, group, way, design)
             bounds, most = bounded[what], SMALL * design.em / 1000 if way.small else np.inf
-            at = points.tobytes(), repr((free, way.small)).encode()
-            key = b"".join([*at, *(bound.most.tobytes() for bound in bounds)])
+            if bounds is None:
+                continue
+            key = b"".join([points.tobytes(), repr((free, way.small)).encode(), bounds.most.tobytes()])
             if key in seen:
                 continue
             seen.add(key)
-            if not bounds:
-                continue
             x = stretch.least(bounds, LOOSE * most)
             if stretch.excess(x, bounds) > HOPE:
                 group.blame(BEYOND)
@@ -280,29 +285,29 @@ def _least(
                 proposal = _proposal(group, first, contour, moved, design)
                 if proposal is None:
                     continue
-                if proposal.change <= SMALL * design.em / 1000:
+                change = float(np.hypot(*(moved - contour.points).reshape(-1, 2).T).max())
+                if change <= SMALL * design.em / 1000:
                     yield proposal
                 else:
-                    later.append(proposal)
+                    later.append((change, proposal))
                 break
-        yield from sorted(later, key=lambda each: each.change)
+        yield from [proposal for _, proposal in sorted(later, key=lambda each: each[0])]
     if ways is WAYS and group.needs is None and group.why in (*WEAK, BEYOND) and stretches:
         way = WAYS[-1]._replace(meets=group.kind == "jump")
         anything = design._replace(tolerance=np.inf)
         stretch = Stretch(layout, [*stretches.values()][-1].free.tolist(), anything)
         bounds = bounds_of(stretch, group, way, design)
-        x = stretch.least(bounds, np.inf)
-        for moved in _on_grid(stretch, bounds, x, np.inf):
+        for moved in _on_grid(stretch, bounds, stretch.least(bounds, np.inf), np.inf) if bounds else ():
             if _is_mended(layout, group, moved, way.exact, design):
                 farthest = max(float(np.abs(stretch.moves(x)).max()), design.tolerance)
                 _proposal(group, first, contour, moved, design, farthest)
                 break
 
 
-def _on_grid(stretch: Stretch, bounds: Sequence[Bound], x: FloatArray, most: float) -> Iterator[FloatArray]:
+def _on_grid(stretch: Stretch, bounds: Bounds, x: FloatArray, most: float) -> Iterator[FloatArray]:
     """Points on the grid near the least moves, and then near those that leave more room for rounding."""
     yield stretch.places_of(stretch.on_grid(x, bounds, most))
-    tighter = [bound if bound.is_jump else bound._replace(most=TIGHTER * bound.most) for bound in bounds]
+    tighter = bounds._replace(most=np.where(bounds.is_jump[:, None], 1.0, TIGHTER) * bounds.most)
     yield stretch.places_of(stretch.on_grid(stretch.least(tighter, LOOSE * most), tighter, most))
 
 
@@ -317,8 +322,8 @@ def _proposal(
         group.needs = min(group.needs or np.inf, distance)
         group.blame(BEYOND)
         return None
-    moved = np.flatnonzero((points != old).any(axis=(0, 2))).tolist()
-    return Proposal(points, moved, distance, float(np.hypot(*(points - old).reshape(-1, 2).T).max()))
+    numbers = np.flatnonzero((points != old).any(axis=(0, 2)))
+    return Proposal(numbers, points[:, numbers], distance)
 
 
 def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, design: Design) -> bool:
@@ -333,8 +338,8 @@ def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, de
     return True
 
 
-def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[Bound]:
-    """What the joints of a stretch may turn, and by how much their curvature may jump."""
+def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> Bounds | None:
+    """What the joints of a stretch may turn, and their curvature jump; None where handles have no length."""
     layout, limits, found = stretch.layout, design.thresholds, []
     for joint in stretch.joints.tolist():
         around = layout.around(joint)
@@ -349,7 +354,7 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
             most = np.maximum(turns, np.radians(BESIDE))
         else:
             continue
-        found.append(Bound(joint, around, False, most, np.ones(len(at))))
+        found.append((around, False, most, np.ones(len(at))))
         if (layout.degrees[[joint - 1, joint]] == 3).all() and np.abs(np.diff(at, axis=1)).max(axis=2).min() > EXACT:
             meets = own and way.meets and joint not in group.jumps
             ends = np.abs(curvatures_at(at))  # what the larger one becomes is not less than the smaller one
@@ -357,8 +362,8 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> list[
             most = LOOSE * np.maximum(limits.relative_jump, limits.jump / design.em / per)
             if not meets:
                 most = np.maximum(most, np.abs(jumps_at(at)) / per)
-            found.append(Bound(joint, around, True, most, per))
-    return found
+            found.append((around, True, most, per))
+    return Bounds(*map(np.array, zip(*found, strict=True))) if found else None
 
 
 def _settled(
@@ -367,7 +372,7 @@ def _settled(
 ) -> tuple[Masters, State]:  # fmt: skip
     """The glyph with those proposals that stand together, and what is found in it."""
     while any(group.now for group in groups):
-        trial = _with(now, groups)
+        trial = with_moves(now, [(group.contour, group.now) for group in groups if group.now])
         given_up = _far(first, trial, groups, design)
         if not given_up:
             trial, after = check(trial)
@@ -379,24 +384,12 @@ def _settled(
     return now, before
 
 
-def _with(masters: Masters, groups: Sequence[Group]) -> Masters:
-    """The glyph with the proposals of all groups."""
-    contours = list(masters.contours)
-    for group in groups:
-        if group.now is not None:
-            own = contours[group.contour]
-            points = own.points.copy()
-            points[:, group.now.moved] = group.now.points[:, group.now.moved]
-            contours[group.contour] = MasterContour(points, own.degrees)
-    return replace(masters, contours=contours)
-
-
 def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) -> list[tuple[Group, str]]:
-    """Groups at a segment that moved by more than the tolerance, as another group moved it too."""
+    """Groups at a segment that moved by more than the tolerance, as another group or the file moved it too."""
     found = []
     for contour in sorted({group.contour for group in groups if group.now}):
         own = [group for group in groups if group.contour == contour and group.now]
-        if len(own) < 2:
+        if len(own) < 2 and own[0].kind in SMOOTHED:
             continue
         bounds = distances(old.contours[contour], new.contours[contour], design)
         for segment in np.flatnonzero(~(bounds <= design.tolerance)).tolist():
@@ -435,17 +428,9 @@ def _results(
     for (c, s), change in mended.items():
         old, new, count = layouts[c].points, now.contours[c].points, layouts[c].points.shape[1]
         reach = [(int(layouts[c].starts[s]) + k) % count for k in (-1, 0, 1, -2, 2, -3, 3)]
-        numbers = sorted({p for p in reach if (c, p) not in taken})
-        taken.update((c, p) for p in numbers)
-        moves = tuple(
-            (k, p, (float(old[k, p, 0]), float(old[k, p, 1])), (float(new[k, p, 0]), float(new[k, p, 1])))
-            for k in range(len(old))
-            for p in numbers
-            if (old[k, p] != new[k, p]).any()
-        )
+        numbers = np.array(sorted({p for p in reach if (c, p) not in taken}), dtype=np.int64)
+        taken.update((c, p) for p in numbers.tolist())
         turn = design.largest_turns(joint_controls(now.contours[c])[:, [s]])[0]
-        yield (c, s), replace(
-            change, after=float(turn) if change.kind == "kink" else None, moves=moves,
-            moved=max([float(np.hypot(u - x, v - y)) for _, _, (x, y), (u, v) in moves], default=0.0),
-            distance=float(max(bounds[c][s - 1], bounds[c][s])),
-        )  # fmt: skip
+        change = replace(change, after=float(turn) if change.kind == "kink" else None)
+        far = float(max(bounds[c][s - 1], bounds[c][s]))
+        yield (c, s), with_result(change, numbers, old[:, numbers], new[:, numbers], far)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, overload
+from typing import TypeVar
 
 import numpy as np
 
@@ -19,11 +19,10 @@ from ..checks.kinds import KINDS, MENDED, MENDED_UNASKED, THRESHOLDS, Thresholds
 from ..errors import OptionError, is_positive, require
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
-from ..types import FloatArray, IntArray
 from .fewer import EDITED, Edited
 from .joints import starts_of
-from .kinks import smoothed
-from .shapes import moved, shape_moves
+from .kinks import BEYOND, SMOOTHED, Group, proposals, settled
+from .shapes import Proposal, moved, shape_moves
 from .state import Change, Design, Into, Key, State, distances
 
 PER_EM = 1e-3
@@ -35,26 +34,15 @@ TRIES = 24
 LIKED = ("handles", "slanted", "extremum")
 """Kinds whose moves come in the order in which they are tried; of others the least comes first."""
 
-SMOOTHED = ("kink", "jump")
-"""Kinds of joints, of which several are mended together."""
-
 ANYWHERE = Into()
 
+Glyph = TypeVar("Glyph", Outline, Masters)
 
-@overload
+
 def mend(
-    glyph: Outline, kinds: Collection[str] = ..., tolerance: float | None = ..., *, thresholds: Thresholds = ...,
-    outer: int = ...,
-) -> tuple[Outline, list[Change]]: ...  # fmt: skip
-@overload
-def mend(
-    glyph: Masters, kinds: Collection[str] = ..., tolerance: float | None = ..., *, thresholds: Thresholds = ...,
-    outer: int = ...,
-) -> tuple[Masters, list[Change]]: ...  # fmt: skip
-def mend(
-    glyph: Outline | Masters, kinds: Collection[str] = MENDED_UNASKED, tolerance: float | None = None, *,
+    glyph: Glyph, kinds: Collection[str] = MENDED_UNASKED, tolerance: float | None = None, *,
     thresholds: Thresholds = THRESHOLDS, outer: int = 0,
-) -> tuple[Outline | Masters, list[Change]]:  # fmt: skip
+) -> tuple[Glyph, list[Change]]:  # fmt: skip
     """Move handles, then nodes, as little as it takes so that joints meant to be smooth no longer kink.
 
     Points stay in their order, and on the grid of the source: whole units, or its decimals. Horizontal and vertical
@@ -141,22 +129,9 @@ class _Glyph:
 
     def moved(self, now: Masters, before: State, kind: str) -> tuple[Masters, State, list[Change]]:
         """Mend the findings of a kind by moves: the glyph, what is found in it then, and what became of them."""
-        if kind in SMOOTHED:
-            changes = {place: self.change(kind, place, value) for place, value in before.values[kind].items()}
-            return smoothed(self.masters, now, before, changes, kind, self.design, self.checked, self.into.fixed)
-        faults = []
-        for place, value in before.values[kind].items():
-            old, own = self.masters.contours[place[0]], now.contours[place[0]]
-            faults.append(
-                _Fault.of(self.change(kind, place, value), old, own, self.design, self.into.fixed.get(place[0]))
-            )
-        while True:
-            if not any(fault.is_moved for fault in faults):
-                return now, before, [fault.left() for fault in faults]
-            trial, after = self.checked(_with(now, faults))
-            beyond = _beyond(self.masters, trial, faults, self.design)
-            if not _advance(faults, before, after, beyond, kind):
-                return trial, after, [fault.result() for fault in faults]
+        changes = {place: self.change(kind, place, value) for place, value in before.values[kind].items()}
+        ways = proposals if kind in SMOOTHED else shape_proposals
+        return settled(self.masters, now, before, changes, kind, self.design, self.checked, self.into.fixed, ways)
 
     def edited(self, now: Masters, before: State, kinds: Sequence[str]) -> tuple[Masters, list[Change]]:
         """Mend findings for which points go, one after the other."""
@@ -231,123 +206,15 @@ def _renumbered(found: Counter[Key], contours: Sequence[Edited], are_new: bool) 
     return renumbered
 
 
-class _Try(NamedTuple):
-    """New places (K, P, 2) of points (P,), and the distance that curves move."""
-
-    numbers: IntArray
-    places: FloatArray
-    distance: float
-
-
-@dataclass
-class _Fault:
-    """A finding, the moves that are left to try, and why others failed; ``old``: its contour before them."""
-
-    change: Change
-    old: MasterContour
-    tries: list[_Try]
-    why: str | None
-    needs: float | None = None
-
-    @classmethod
-    def of(
-        cls, change: Change, origin: MasterContour, contour: MasterContour, design: Design, fixed: str | None
-    ) -> _Fault:
-        """Find the moves that are within the tolerance of the contour ``origin``; in masters nodes come last."""
-        fault = cls(change, contour, [], fixed)
-        if fixed is None:
-            for numbers, places in shape_moves(change.kind, contour, change.segment, design.step):
-                bound = float(distances(origin, moved(contour, numbers, places), design).max())
-                fault.tries.append(_Try(numbers, places, bound))
-            if change.kind not in LIKED:
-                fault.tries.sort(key=lambda each: each.distance)
-        within = [each for each in fault.tries if each.distance <= design.tolerance]
-        if fault.tries and not within:
-            fault.why, fault.needs = "is beyond the tolerance", min(each.distance for each in fault.tries)
-        fault.tries = within[:TRIES]
-        return fault
-
-    @property
-    def is_moved(self) -> bool:
-        """Whether there is a move to try."""
-        return bool(self.tries)
-
-    def touches(self, contour: int, segment: int) -> bool:
-        """Whether a finding there may come of these moves: at its place, at a neighbour, or of the whole contour."""
-        if contour != self.change.contour:
-            return False
-        return segment < 0 or (segment - self.change.segment + 2) % len(self.old) <= 4
-
-    def next(self, why: str) -> None:
-        """Give up the first move."""
-        self.tries.pop(0)
-        self.why = self.why or why
-
-    def left(self) -> Change:
-        """The finding as it was, with the reason."""
-        return replace(self.change, why=self.why or "is mended by no move", needs=self.needs)
-
-    def result(self) -> Change:
-        """What became of the finding."""
-        if not self.is_moved:
-            return self.left()
-        numbers, new, bound = self.tries[0]
-        old = self.old.points[:, numbers]
-        moved = [
-            (k, int(numbers[p]), (float(x), float(y)), (float(u), float(v)))
-            for k, (before, behind) in enumerate(zip(old, new, strict=True))
-            for p, ((x, y), (u, v)) in enumerate(zip(before, behind, strict=True))
-            if (x, y) != (u, v)
-        ]
-        return replace(
-            self.change, moved=float(np.hypot(*(new - old).reshape(-1, 2).T).max()), moves=tuple(moved), distance=bound,
-        )  # fmt: skip
-
-
-def _advance(
-    faults: Sequence[_Fault], before: State, after: State, beyond: Collection[tuple[int, int]], kind: str
-) -> bool:
-    """Give up moves that mend nothing, bring new findings or are too far together; returns whether there were any."""
-    given_up = False
-    moved = [fault for fault in faults if fault.is_moved]
-    for fault in moved:
-        place = fault.change.contour, fault.change.segment
-        if place in after.values[kind]:
-            fault.next("is still found")
-            given_up = True
-        elif place in beyond:
-            fault.next("is beyond the tolerance together with its neighbour")
-            given_up = True
-    new = after.found - before.found
-    for what, contour, segment, _ in new:
-        why = f"would bring a new finding: {KINDS[what].name}"
-        touched = [fault for fault in moved if fault.is_moved and fault.touches(contour, segment)]
-        touched = touched or [fault for fault in moved if fault.is_moved]
-        for fault in touched:
-            fault.next(why)
-            given_up = True
-    return given_up
-
-
-def _with(masters: Masters, faults: Sequence[_Fault]) -> Masters:
-    """The glyph with the first move of every finding."""
-    contours = list(masters.contours)
-    for fault in faults:
-        if fault.is_moved:
-            own = contours[fault.change.contour]
-            contours[fault.change.contour] = moved(own, fault.tries[0].numbers, fault.tries[0].places)
-    return replace(masters, contours=contours)
-
-
-def _beyond(old: Masters, new: Masters, faults: Sequence[_Fault], design: Design) -> set[tuple[int, int]]:
-    """Findings at a segment that is farther away than the tolerance: of those around it the one that moves most."""
-    found = set()
-    moved = [fault for fault in faults if fault.is_moved]
-    for contour in sorted({fault.change.contour for fault in moved}):
-        bounds = distances(old.contours[contour], new.contours[contour], design)
-        for segment in np.flatnonzero(~(bounds <= design.tolerance)).tolist():
-            ends = {(segment + k) % len(bounds) for k in (-1, 0, 1)}
-            of_contour = [fault for fault in moved if fault.change.contour == contour]
-            own = [fault for fault in of_contour if fault.change.segment in ends] or of_contour
-            found.add((contour, max(own, key=lambda fault: fault.tries[0].distance).change.segment))
-    return found
+def shape_proposals(group: Group, first: MasterContour, contour: MasterContour, design: Design) -> Iterator[Proposal]:
+    """The moves of :mod:`.shapes` that are within the tolerance, as :func:`.kinks.proposals` has those of joints."""
+    tries = []
+    for numbers, places in shape_moves(group.kind, contour, group.joints[0], design.step):
+        bound = float(distances(first, moved(contour, numbers, places), design).max())
+        tries.append(Proposal(numbers, places, bound))
+    if group.kind not in LIKED:
+        tries.sort(key=lambda each: each.distance)
+    within = [each for each in tries if each.distance <= design.tolerance]
+    if tries and not within:
+        group.why, group.needs = BEYOND, min(each.distance for each in tries)
+    yield from within[:TRIES]

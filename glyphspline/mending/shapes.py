@@ -7,17 +7,20 @@ curves, and what else is found then is measured afterwards; here are only those 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
 from ..checks.turns import joint_controls, turns_of
 from ..curves.bezier import cross
-from ..outlines.masters import MasterContour
+from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray, IntArray
 from .extrema import extremum_moves, level_moves
-from .joints import SMOOTH, Move, starts_of
+from .joints import SMOOTH, Layout, Move, starts_of
+from .state import Change
 
 NEARLY = np.tan(np.radians(1.0))
 """Slope up to which a line is level in another master, too; one that is steeper anywhere is meant, and stays."""
@@ -73,15 +76,38 @@ def with_nodes(contour: MasterContour, numbers: IntArray, places: FloatArray, st
 
 def moved(contour: MasterContour, numbers: IntArray, places: FloatArray) -> MasterContour:
     """A contour after a move; a node midway between two control points of quadratics stays so, as fonts imply it."""
-    points = contour.points.copy()
+    points, at = contour.points.copy(), np.flatnonzero(Layout(contour).implied)
     points[:, numbers] = places
-    if (contour.degrees == 2).any():
-        at = starts_of(contour)[(contour.degrees == 2) & (np.roll(contour.degrees, 1) == 2)]
-        behind = (at + 1) % points.shape[1]
-        implied = (contour.points[:, at - 1] + contour.points[:, behind] == 2 * contour.points[:, at]).all(axis=(0, 2))
-        at, behind = at[implied], behind[implied]
-        points[:, at] = (points[:, at - 1] + points[:, behind]) / 2
+    points[:, at] = (points[:, at - 1] + points[:, (at + 1) % points.shape[1]]) / 2
     return MasterContour(points, contour.degrees)
+
+
+class Proposal(NamedTuple):
+    """New places (K, P, 2) of points (P,) of a contour, and how far its curves move then, certified."""
+
+    numbers: IntArray
+    places: FloatArray
+    distance: float
+
+
+def with_moves(masters: Masters, proposals: Iterable[tuple[int, Proposal]]) -> Masters:
+    """A glyph after moves of contours, which are given by their numbers."""
+    contours = list(masters.contours)
+    for c, (numbers, places, _) in proposals:
+        contours[c] = moved(contours[c], numbers, places)
+    return replace(masters, contours=contours)
+
+
+def with_result(change: Change, numbers: IntArray, old: FloatArray, new: FloatArray, distance: float) -> Change:
+    """What became of a finding that is mended, for which points (P,) went from old to new places (K, P, 2)."""
+    moves = tuple(
+        (k, p, (x, y), (u, v))
+        for k, (before, behind) in enumerate(zip(old.tolist(), new.tolist(), strict=True))
+        for p, (x, y), (u, v) in zip(numbers.tolist(), before, behind, strict=True)
+        if (x, y) != (u, v)
+    )
+    most = float(np.hypot(*(new - old).reshape(-1, 2).T).max(initial=0.0))
+    return replace(change, moved=most, moves=moves, distance=distance)
 
 
 def line_moves(contour: MasterContour, segment: int) -> Iterator[Move]:

@@ -189,11 +189,9 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
         anchors: (m + 1, 2) where the new segments begin on the new and on the old contour; by default the two have the
             same segments, and a joint is paired with the place that it slid to.
     """
-    one, other = old.cubics(), new.cubics()
+    one, other, none = old.cubics(), new.cubics(), np.empty((0, 4))
     if anchors is not None:
-        bounds = np.full(len(new), np.nan)
-        _measure(_Pair.at(design.corners, one, other), anchors, np.empty((0, 4)), design.tolerance, bounds)
-        return bounds
+        return _measured(design.corners, one, other, np.arange(len(new)), none, design.tolerance, anchors)
     bounds = np.zeros(len(new))
     arcs = arcs_of(old, new)
     moved = np.flatnonzero((one != other).any(axis=(0, 2, 3)))
@@ -201,36 +199,16 @@ def distances(old: MasterContour, new: MasterContour, design: Design, anchors: F
     while boxes:
         grid, own, halvings = boxes.pop()
         corners = grid.reshape(-1, grid.shape[-1])
-        found = _between(corners, one, other, own, arcs, design.tolerance)
+        found = _measured(corners, one, other, own, arcs if len(corners) > 1 else none, design.tolerance)
         far = np.flatnonzero(~(found <= design.tolerance))
         if len(far) and len(corners) > 1 and halvings < HALVINGS:
-            again = far[_seen(corners, one, other, own[far], design.tolerance) <= design.tolerance]
+            single = [_measured(each[None], one, other, own[far], none, design.tolerance) for each in corners]
+            again = far[np.max(single, axis=0) <= design.tolerance]
             if len(again):
                 found[again] = 0.0
                 boxes += [(half, own[again], halvings + 1) for half in _halves(grid, new.points - old.points)]
         bounds[own] = np.maximum(bounds[own], found)
     return bounds
-
-
-class _Pair(NamedTuple):
-    """A contour before and after at V locations.
-
-    Attributes:
-        old, new: (m V, 4, 2) segments, those of a segment after each other. locations: V.
-    """
-
-    old: FloatArray
-    new: FloatArray
-    locations: int
-
-    @classmethod
-    def at(cls, corners: FloatArray, *contours: FloatArray) -> _Pair:
-        """At locations (V, K), of segments (K, m, 4, 2)."""
-        old, new = (
-            np.ascontiguousarray(np.swapaxes(np.tensordot(corners, cubics, axes=1), 0, 1).reshape(-1, 4, 2))
-            for cubics in contours
-        )
-        return cls(old, new, len(corners))
 
 
 def _halves(grid: FloatArray, moves: FloatArray) -> list[FloatArray]:
@@ -244,49 +222,37 @@ def _halves(grid: FloatArray, moves: FloatArray) -> list[FloatArray]:
     return [np.moveaxis(part, 0, axis) for part in (at[: half + 1], at[half:])]
 
 
-def _seen(corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, tolerance: float) -> FloatArray:
-    """(s,) certified bounds of segments at single locations (V, K), the largest of all of them."""
-    found = np.zeros(len(own))
-    for weights in corners:
-        pair, bounds = _Pair.at(weights[None], old, new), np.zeros(new.shape[1])
-        bounds[own] = np.nan
-        _measure(pair, _anchors(pair, old, new), np.empty((0, 4)), tolerance, bounds)
-        found = np.maximum(found, bounds[own])
-    return found
+def _measured(
+    corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, arcs: FloatArray,
+    tolerance: float, anchors: FloatArray | None = None,
+) -> FloatArray:  # fmt: skip
+    """(s,) certified bounds of some segments of (K, m, 4, 2) at every location between some (V, K).
 
-
-def _between(
-    corners: FloatArray, old: FloatArray, new: FloatArray, own: IntArray, arcs: FloatArray, tolerance: float
-) -> FloatArray:
-    """(s,) certified bounds of segments at every location between some (V, K)."""
-    pair, found = _Pair.at(corners, old, new), np.zeros(len(own))
-    anchors = _anchors(pair, old, new)
-    if len(corners) == 1:
-        arcs = np.empty((0, 4))
-    for n, segment in enumerate(own):
-        bounds = np.zeros(new.shape[1])
-        bounds[segment] = np.nan
-        _measure(pair, anchors, arcs, tolerance, bounds)
-        found[n] = bounds[segment]
-    return found
-
-
-def _anchors(pair: _Pair, old: FloatArray, new: FloatArray) -> FloatArray:
-    """(m + 1, 2) where new segments begin on the new contour, and near which place of the old one, at all locations."""
-    m = new.shape[1]
-    places = np.arange(float(m))
-    same = (old[:, :, 0] == new[:, :, 0]).all(axis=(0, 2))
-    near_places(pair.locations, pair.old, places, pair.new, same, True, 0.0, 0.0, places)
-    return np.column_stack([np.arange(m + 1.0), np.append(places, places[0] + m)])
-
-
-def _measure(pair: _Pair, anchors: FloatArray, arcs: FloatArray, tolerance: float, bounds: FloatArray) -> None:
-    """Write the bounds that are NaN; see :func:`.pair_instances`."""
-    m = len(bounds)
-    pair_instances(
-        pair.locations, pair.new, offsets_of([m]), pair.old, offsets_of([len(pair.old) // pair.locations]), anchors,
-        offsets_of([m + 1]), arcs, SHARPNESS * tolerance, tolerance, bounds, np.zeros(m),
-    )  # fmt: skip
+    Args:
+        arcs, anchors: see :func:`.pair_instances`; without anchors a joint is paired with the nearest place of the old
+            contour, at all locations, unless it stays.
+    """
+    V, m = len(corners), new.shape[1]
+    sources, results = (
+        np.ascontiguousarray(np.swapaxes(np.tensordot(corners, cubics, axes=1), 0, 1).reshape(-1, 4, 2))
+        for cubics in (old, new)
+    )
+    if anchors is None:
+        places = np.arange(float(m))
+        same = (old[:, :, 0] == new[:, :, 0]).all(axis=(0, 2))
+        near_places(V, sources, places, results, same, True, 0.0, 0.0, places)
+        anchors = np.column_stack([np.arange(m + 1.0), np.append(places, places[0] + m)])
+    found = np.zeros(m)
+    # Of arcs one by one: together none would be refined once another one of its arc is beyond the tolerance.
+    for some in own[:, None] if len(arcs) else own[None]:
+        bounds = np.zeros(m)
+        bounds[some] = np.nan
+        pair_instances(
+            V, results, offsets_of([m]), sources, offsets_of([old.shape[1]]), anchors, offsets_of([m + 1]), arcs,
+            SHARPNESS * tolerance, tolerance, bounds, np.zeros(m),
+        )  # fmt: skip
+        found += bounds
+    return found[own]
 
 
 def arcs_of(contour: MasterContour, other: MasterContour) -> FloatArray:

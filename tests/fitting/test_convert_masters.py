@@ -474,13 +474,11 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
     font = gs.open_font(CFF2)
     assert isinstance(font, Font)
     cff2 = MadeOnDemand(font.glyph_names, lambda name: read(font.masters(name)))
-    to_variable_font(font, cff2, "otf", with_contours=False)
+    to_variable_font(font, cff2, "otf")
     write_designspace(font, cff2, tmp_path / "folder")
     pair = [gs.open_font(path) for path in weights_of_blobs]
     glyphs = {glyph.name: glyph for glyph in masters_of_fonts(pair, "wght=400:900") if isinstance(glyph, Masters)}
-    to_new_variable_font(
-        pair, "wght=400:900", MadeOnDemand(glyphs, lambda name: read(glyphs[name])), with_contours=False
-    )
+    to_new_variable_font(pair, "wght=400:900", MadeOnDemand(glyphs, lambda name: read(glyphs[name])))
     assert len(alive) > 8
 
 

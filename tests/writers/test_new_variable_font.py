@@ -137,9 +137,9 @@ def built(request: pytest.FixtureRequest, single: dict[str, Path]) -> Built:
     redrawn, left = matched(fonts)
     assert list(left) == ["v"]
     assert set(redrawn) == {".notdef", "o", "n", "u", "c", "e"}
-    data, summary = to_new_variable_font(fonts, AXIS, redrawn, left, tolerance=0.5)
+    data, summary = to_new_variable_font(fonts, AXIS, redrawn, tolerance=0.5)
     assert set(summary.glyphs) == set(redrawn)
-    assert summary.left == left
+    assert not summary.left
     return Built(fonts, data, redrawn, summary)
 
 
@@ -259,8 +259,8 @@ def test_redrawn_arcs_have_no_kinks_between_the_ends(single: dict[str, Path]) ->
 def test_three_fonts_with_the_default_in_the_middle(single: dict[str, Path]) -> None:
     fonts = [open_font(single[name]) for name in ("Medium.otf", "Light.ttf", "Bold.ttf")]
     axis = "wght=500:300:700"
-    redrawn, left = matched(fonts, axis)
-    data, summary = to_new_variable_font(fonts, axis, redrawn, left, family="Three")
+    redrawn, _ = matched(fonts, axis)
+    data, summary = to_new_variable_font(fonts, axis, redrawn, family="Three")
     tables, drawing = TTFont(BytesIO(data)), Drawing(data)
     (own,) = tables["fvar"].axes
     assert (own.minValue, own.defaultValue, own.maxValue) == (300, 500, 700)
@@ -277,11 +277,11 @@ def test_three_fonts_with_the_default_in_the_middle(single: dict[str, Path]) -> 
 
 def test_a_glyph_that_cannot_be_written_does_not_vary(single: dict[str, Path]) -> None:
     fonts = [open_font(single[name]) for name in ("Light.ttf", "Bold.ttf")]
-    redrawn, left = matched(fonts)
+    redrawn, _ = matched(fonts)
     huge = replace(redrawn["n"].contours[0], points=redrawn["n"].contours[0].points * 100)
     redrawn["n"] = replace(redrawn["n"], contours=(huge,))
-    data, summary = to_new_variable_font(fonts, AXIS, redrawn, left)
-    assert set(summary.left) == {"n", "v"}
+    data, summary = to_new_variable_font(fonts, AXIS, redrawn)
+    assert set(summary.left) == {"n"}
     assert "do not fit into a font" in summary.left["n"]
     assert "n" not in summary.glyphs
     tables, drawing = TTFont(BytesIO(data)), Drawing(data)
@@ -320,8 +320,8 @@ def test_fonts_of_one_style_are_told_apart_by_their_values(single: dict[str, Pat
 
 def test_the_same_bytes_each_time(single: dict[str, Path]) -> None:
     fonts = [open_font(single[name]) for name in ("Light.otf", "Bold.ttf")]
-    redrawn, left = matched(fonts)
-    assert to_new_variable_font(fonts, AXIS, redrawn, left)[0] == to_new_variable_font(fonts, AXIS, redrawn, left)[0]
+    redrawn, _ = matched(fonts)
+    assert to_new_variable_font(fonts, AXIS, redrawn)[0] == to_new_variable_font(fonts, AXIS, redrawn)[0]
 
 
 def test_what_cannot_be_built_is_refused(single: dict[str, Path]) -> None:

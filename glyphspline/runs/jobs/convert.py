@@ -305,7 +305,7 @@ def back_to_source(
     where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
     curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
     curves += "" if isinstance(source, Ufo) else ", in all masters"
-    remarks = [f"{where}: new outlines of {counted(found.glyphs, 'glyph')}, {curves}; nothing else changed"]
+    remarks = [f"{where}: new outlines of {counted(len(found.names), 'glyph')}, {curves}; nothing else changed"]
     kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
     return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
 

@@ -30,7 +30,7 @@ from ...readers.single_fonts import Unmatched, axis_of, masters_of_fonts
 from ...report import FOLDER as GALLERY
 from ...types import MadeOnDemand, counted, listed, rounded_up
 from ...writers.font.font_glyphs import SHARE, Flavour
-from ...writers.font.master_deltas import Redrawn, StoredGlyph, Tally, bound_of
+from ...writers.font.master_deltas import Redrawn, StoredGlyph, bound_of
 from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
@@ -260,14 +260,15 @@ def redrawn_glyph(result: MastersResult) -> Redrawn:
     return Redrawn(
         result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours),
         tuple(c.deviation_bound for c in contours), tuple(numbers), result.options.corners == "sharp",
-        None if result.tally is None else Tally(*map(tuple, result.tally.tolist())),
+        result.tally,
     )  # fmt: skip
 
 
 def _stored(glyph: StoredGlyph, redrawn: Mapping[str, Redrawn], name: str, tolerance: float) -> dict[str, Any]:
     """What the manifest says of a glyph as a font stores it."""
-    bound, tally = bound_of(glyph, redrawn[name]), glyph.tally
-    counts = {"points": tally.points, "kinks": tally.kinks, "kinks_between_masters": tally.between} if tally else {}
+    bound, counts = bound_of(glyph, redrawn[name]), dict[str, Any]()
+    if glyph.tally is not None:
+        counts = dict(zip(("points", "kinks", "kinks_between_masters"), glyph.tally.tolist(), strict=True))
     return {"bound": rounded_up(bound, 6), "within_tolerance": bound <= tolerance, **counts}
 
 
@@ -277,8 +278,7 @@ def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> st
     if bounds:
         remark += f", certified as stored within {rounded_up(max(bounds), 3):g} units of the source"
     if (tally := facts.tally) is not None:
-        pairs = (tally.points, tally.kinks, tally.between)
-        points, kinks, between = (f"{before:,} → {after:,}" for before, after in pairs)
+        points, kinks, between = (f"{before:,} → {after:,}" for before, after in tally.tolist())
         what = "points" if path.suffix == ".ttf" else "segments"
         remark += f"; {what} {points}, kinks at masters and along axes {kinks}, of them between masters {between}"
     return remark
@@ -297,11 +297,9 @@ def _font(
     rest = (1 - SHARE) * tolerance
     family = spec.family_of(source)
     if axis is not None:
-        return to_new_variable_font(sources, axis, redrawn, tolerance=rest, family=family, with_contours=False)
+        return to_new_variable_font(sources, axis, redrawn, tolerance=rest, family=family)
     assert isinstance(source, Font)
-    how: dict[str, Any] = {
-        "tolerance": tolerance, "family": None if spec.keep_name else family, "with_contours": False
-    }  # fmt: skip
+    how: dict[str, Any] = {"tolerance": tolerance, "family": None if spec.keep_name else family}
     if flavour == flavour_of(source):
         return to_variable_font(source, redrawn, flavour, **how)
     return to_other_outlines(source, redrawn, flavour, rest=rest, **how)

@@ -49,11 +49,6 @@ class Written:
     kept: dict[str, str] = field(default_factory=dict)
     contours: dict[tuple[str, int], str] = field(default_factory=dict)
 
-    @property
-    def glyphs(self) -> int:
-        """Number of glyphs that changed."""
-        return len(self.names)
-
 
 @dataclass(frozen=True)
 class New:
@@ -123,7 +118,7 @@ def write_back(
     if isinstance(source, GlyphsFile):
         edit = _GlyphsEdit(source, layer)
         found = _edited(source, glyphs, digits, edit, dry)
-        if not dry and (found.glyphs or copy is not None):
+        if not dry and (found.names or copy is not None):
             write_whole(str(copy or source.path), edit.text(), durable=True)
         return found
     if copy is None or dry:

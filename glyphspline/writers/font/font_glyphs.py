@@ -269,18 +269,21 @@ def bounds_of(data: Any, contours: Sequence[Contour]) -> tuple[float, float, flo
     return pen.bounds and tuple(map(otRound, pen.bounds))
 
 
+def below(font: TTFont, name: str) -> list[str]:
+    """A glyph of ``glyf`` and its components at any depth, in order, each once."""
+    glyf, known, waiting = font["glyf"], dict[str, None](), [name]
+    while waiting:
+        name = waiting.pop()
+        if name not in known:
+            known[name] = None
+            waiting += reversed(glyf[name].getComponentNames(glyf))
+    return [*known]
+
+
 def users(font: TTFont, parts: Iterable[str]) -> list[str]:
     """Glyphs of ``glyf`` that are among ``parts``, or have a component among them at any depth; in the font's order."""
-    glyf = font["glyf"]
-    known = dict.fromkeys(parts, True)
-
-    def uses(name: str, above: tuple[str, ...]) -> bool:
-        if name not in known:
-            inside = () if name in above else glyf[name].getComponentNames(glyf)
-            known[name] = any(uses(part, (*above, name)) for part in inside)
-        return known[name]
-
-    return [name for name in font.getGlyphOrder() if uses(name, ())]
+    known = {*parts}
+    return [name for name in font.getGlyphOrder() if not known.isdisjoint(below(font, name))]
 
 
 def drop_endless(font: TTFont) -> None:
@@ -314,13 +317,7 @@ def put_string(strings: Any, name: str, new: Any) -> None:
 
 def parts_of(font: TTFont, name: str) -> list[str]:
     """The simple glyphs that a glyph of ``glyf`` is made of, in order, each once; itself if it is simple."""
-    glyf, known, waiting = font["glyf"], dict[str, bool](), [name]
-    while waiting:
-        name = waiting.pop()
-        if name not in known:
-            known[name] = not glyf[name].isComposite()
-            waiting += reversed(glyf[name].getComponentNames(glyf))
-    return [name for name, simple in known.items() if simple]
+    return [part for part in below(font, name) if not font["glyf"][part].isComposite()]
 
 
 def decomposed(glyf: Any, name: str) -> Any:

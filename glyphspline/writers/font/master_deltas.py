@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,25 +13,6 @@ from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters
 from ...types import BoolArray, FloatArray, IntArray, counted
 from .font_glyphs import LIMIT, Flavour
-
-
-@dataclass(frozen=True)
-class Tally:
-    """A glyph's points and kinks, before and after.
-
-    Attributes:
-        points: of the glyph as it is stored: in glyf its points, in CFF2 its lines and curves.
-        kinks: joints that ``check`` reports along the axes and in masters. between: those of them that turn more
-            between masters than in them.
-    """
-
-    points: tuple[int, int]
-    kinks: tuple[int, int]
-    between: tuple[int, int]
-
-    def __add__(self, other: Tally) -> Tally:
-        """Those of both."""
-        return Tally(*map(tuple, (np.array(astuple(self)) + astuple(other)).tolist()))
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,8 +28,8 @@ class Redrawn:
             source, and stay as the font has them where the new ones would turn a joint that the source does not turn.
         numbers: with ``bounds``, for each contour that of its source in ``masters``.
         fewest: with ``bounds``, arcs also stay as they are where new ones would need more points.
-        tally: of contours that are as ``glyf`` stores them: quadratics, those at ``inner`` joints beginning midway
-            between control points; or the source's own. Else None.
+        tally: see :class:`StoredGlyph`, of contours that are as ``glyf`` stores them: quadratics, those at ``inner``
+            joints beginning midway between control points; or the source's own. Else None.
 
     Raises:
         ValueError: the numbers of masters, contours or segments do not agree.
@@ -60,7 +41,7 @@ class Redrawn:
     bounds: tuple[float, ...] = ()
     numbers: tuple[int, ...] = ()
     fewest: bool = False
-    tally: Tally | None = None
+    tally: IntArray | None = None
 
     def __post_init__(self) -> None:
         if len(self.contours) != len(self.inner):
@@ -78,21 +59,20 @@ class StoredGlyph:
     """A glyph as a font stores it.
 
     Attributes:
-        contours: what is drawn, numbers rounded, in the masters of :class:`Redrawn`; none if they were
-            not asked for.
         inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
         distance: the largest from the contours that were given, in font units, at the corners of the design space and
             in between. In CFF2 a bound; in glyf from dense samples.
         bound: of the distance from the source: certified up to the contours that were given, and from there the
             distance of what is stored; None if no bounds were given.
-        tally: points and kinks before and after; None likewise.
+        tally: (3, 2) before and after: points, in glyf as stored, in CFF2 lines and curves; joints that ``check``
+            reports along the axes and in masters; and those of them that turn more between masters than in them. None
+            likewise.
     """
 
-    contours: tuple[MasterContour, ...]
     inner: tuple[BoolArray, ...]
     distance: float
     bound: float | None = None
-    tally: Tally | None = None
+    tally: IntArray | None = None
 
 
 def bound_of(glyph: StoredGlyph, redrawn: Redrawn) -> float:

@@ -39,11 +39,9 @@ def to_new_variable_font(
     sources: Sequence[Source],
     axis: str,
     redrawn: Mapping[str, Redrawn],
-    left: Mapping[str, str] | None = None,
     *,
     tolerance: float = 0.5,
     family: str | None = None,
-    with_contours: bool = True,
 ) -> tuple[bytes, VariableSummary]:
     """The font as a TTF's bytes; the same input gives the same bytes.
 
@@ -52,15 +50,9 @@ def to_new_variable_font(
         axis: like "wght=300:700", a value a font.
         redrawn: name of a glyph in the default to its contours in all masters, read one by one. The masters are those
             of :func:`...readers.single_fonts.masters_of_fonts` for the same fonts and axis. Composites are written as
-            simple glyphs.
-        left: names of glyphs that have no masters, to the reasons. All glyphs that are not in ``redrawn`` look as in
-            the default everywhere.
+            simple glyphs. All others look as in the default everywhere.
         tolerance: how far the quadratics, rounded, may be from the contours given, in units of the default.
         family: its name; None is the default's with "Spline".
-        with_contours: see :func:`.variable_font.to_variable_font`.
-
-    Returns:
-        The bytes, and the facts; glyphs that could not be written are added to those ``left``.
 
     Raises:
         FontError: the axis is none for these fonts, or the default cannot become a font.
@@ -77,12 +69,10 @@ def to_new_variable_font(
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
     add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
     drawn = MadeOnDemand(given, lambda stored: oriented(redrawn[given[stored]], "ttf"))
-    data, summary = to_variable_font(
-        opened(font, default.path), drawn, "ttf", tolerance=tolerance, with_contours=with_contours
-    )
+    data, summary = to_variable_font(opened(font, default.path), drawn, "ttf", tolerance=tolerance)
     glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
-    missed = {given[stored]: reason for stored, reason in summary.left.items()}
-    return _finished(data, list(summary.left)), replace(summary, glyphs=glyphs, left={**(left or {}), **missed})
+    left = {given[stored]: reason for stored, reason in summary.left.items()}
+    return _finished(data, list(summary.left)), replace(summary, glyphs=glyphs, left=left)
 
 
 def _check(default: Source, design: DesignAxis, redrawn: Mapping[str, Redrawn]) -> None:

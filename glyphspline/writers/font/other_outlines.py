@@ -38,13 +38,13 @@ log = logging.getLogger("glyphspline")
 
 def to_other_outlines(
     source: Font, redrawn: Mapping[str, Redrawn], flavour: Flavour, *, tolerance: float, rest: float,
-    family: str | None = None, with_contours: bool = True,
+    family: str | None = None,
 ) -> tuple[bytes, VariableSummary]:  # fmt: skip
     """The font as a file's bytes, with outlines of the other kind; the same input gives the same bytes.
 
     Args:
-        source, redrawn, flavour, tolerance, family, with_contours: see :func:`.variable_font.to_variable_font`; the
-            flavour is not the source's.
+        source, redrawn, flavour, tolerance, family: see :func:`.variable_font.to_variable_font`; the flavour is not
+            the source's.
         rest: how far quadratics may be from the cubics they are made of.
 
     Raises:
@@ -56,22 +56,20 @@ def to_other_outlines(
     near = tolerance if flavour == "otf" else rest
     with reusing(source.path, source.kind):
         empty = blank(source, masters, flavour)
-    if any(new.tally for new in redrawn.values()):  # then all are as they are stored
+    if any(new.tally is not None for new in redrawn.values()):  # then all are as they are stored
         for name in source.glyph_names:
             if name not in redrawn and masters[name].contours:
                 log.warning("%s, glyph %r: not fitted: left empty in the written font", source.path, name)
         drawn = MadeOnDemand(dict.fromkeys(redrawn), lambda name: oriented(redrawn[name], flavour))
-        return to_variable_font(empty, drawn, flavour, family=family, with_contours=with_contours)
-    plain, kept = to_variable_font(empty, as_is, flavour, tolerance=near, with_contours=False)
+        return to_variable_font(empty, drawn, flavour, family=family)
+    plain, kept = to_variable_font(empty, as_is, flavour, tolerance=near)
     for name, reason in kept.left.items():
         log.warning("%s, glyph %r: %s: left empty in the written font", source.path, name, reason)
     written, left = Font(source.path, plain, 0, None), dict[str, str]()
     while True:
         wanted = [name for name in redrawn if name not in left]
         drawn = MadeOnDemand(wanted, lambda name: oriented(redrawn[name], flavour))
-        data, facts = to_variable_font(
-            written, drawn, flavour, tolerance=near, family=family, with_contours=with_contours
-        )
+        data, facts = to_variable_font(written, drawn, flavour, tolerance=near, family=family)
         far = [name for name, glyph in facts.glyphs.items() if bound_of(glyph, redrawn[name]) > tolerance]
         if not far:
             return data, replace(facts, left={**facts.left, **left})

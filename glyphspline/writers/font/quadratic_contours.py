@@ -32,7 +32,6 @@ class Own:
         steps: (K, n, 2) the default and the deltas of its points, those that the font infers rounded. on: (n,) which of
             them are on the curve. place: their numbers in the glyph.
         known: whether readers drop no segment. implied: (m,) whether a segment begins at an implied point, if so.
-        turned: whether the glyph's last point is the first here, as a control point cannot be the start.
     """
 
     steps: IntArray
@@ -40,11 +39,6 @@ class Own:
     place: slice
     known: bool
     implied: BoolArray
-    turned: bool
-
-    def as_stored(self) -> StoredPoints:
-        """The points in the font's order."""
-        return np.roll(self.steps, -int(self.turned), axis=1), np.roll(self.on, -int(self.turned))
 
 
 def in_quadratics(
@@ -76,7 +70,10 @@ def in_quadratics(
 
     def fit(c: int) -> None:
         own, moved = before[c], MasterContour(new.contours[c].points + offset, new.contours[c].degrees)
-        stored = (as_drawn(masters, own.steps, 1), own.on) if own and is_stored(c) else None
+        stored = None
+        if own and is_stored(c):  # a control point cannot be the start
+            turned = int(own.on[-1] and not own.on[0])
+            stored = np.roll(as_drawn(masters, own.steps, 1), turned, axis=1), np.roll(own.on, turned)
         sources = [Contours([moved.mixed(weights)]).arrays for weights in np.eye(len(masters))]
         room = tolerance - wanted[c]
         room = max(room - rest, room / 2)

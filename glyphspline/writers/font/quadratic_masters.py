@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, replace
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -12,7 +12,7 @@ from ...fitting.convert_masters import MastersContourResult, MastersResult, conv
 from ...fitting.options import Options
 from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
-from .master_deltas import Tally
+from ...types import IntArray
 from .quadratic_contours import in_quadratics, unchanged
 from .stretches import Turning, tally
 from .variable_glyf import Quadratics
@@ -28,7 +28,7 @@ def quadratic_masters(source: Font, masters: Masters, options: Options) -> Maste
         GlyphsplineError: see :func:`...fitting.convert_masters.convert_masters`.
     """
     tolerance, corners = options.tolerance_for(masters.metrics.units_per_em), masters.weights_at(masters.grid())
-    tallies, known = dict[tuple[MasterContour, ...], Tally](), glyphs_of(source)
+    tallies, known = dict[tuple[MasterContour, ...], IntArray](), glyphs_of(source)
     owns, shift = known[0].own(known[1][masters.gid], masters) if known else ({}, np.zeros(len(masters)))
 
     def fit(numbers: Sequence[int], share: float) -> list[MastersContourResult]:
@@ -50,7 +50,7 @@ def quadratic_masters(source: Font, masters: Masters, options: Options) -> Maste
     curves = tuple(each.curve for each in result.contours)
     if (found := tallies.get(curves)) is None:
         found = tally((0, 0), (Turning(masters), Turning(replace(masters, contours=curves, repeats=None))))
-    return replace(result, tally=np.array(astuple(found)))
+    return replace(result, tally=found)
 
 
 def kept(source: MasterContour, made: MasterContour) -> int:

@@ -20,7 +20,7 @@ from ...checks.on_axes import kinks_of
 from ...checks.turns import joint_controls, turns_of
 from ...outlines.masters import MasterContour, Masters
 from ...types import BoolArray, FloatArray, IntArray
-from .master_deltas import Redrawn, Tally
+from .master_deltas import Redrawn
 
 NEAR = 1e-3
 """Distance in font units up to which points are one: curves come back from their fit as exact as numbers are."""
@@ -235,7 +235,7 @@ def fewest(plans: Sequence[Segments]) -> None:
         plans[-c].own[-k] = True
 
 
-def tally(points: tuple[int, int], turning: tuple[Turning, Turning]) -> Tally:
-    """Points of a glyph before and after, and the kinks of where it turns, as ``check`` reports them."""
-    before, after = ([*each.reported.values()] for each in turning)
-    return Tally(points, (len(before), len(after)), (sum(m > 0 for m in before), sum(m > 0 for m in after)))
+def tally(points: tuple[int, int], turning: tuple[Turning, Turning]) -> IntArray:
+    """(3, 2) points of a glyph before and after, its kinks, as ``check`` reports them, and those between masters."""
+    kinks = [[*each.reported.values()] for each in turning]
+    return np.array([points, [len(each) for each in kinks], [sum(more > 0 for more in each) for each in kinks]])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -29,7 +29,7 @@ from ...readers.source import reusing
 from ...types import FloatArray, IntArray, counted
 from .font_file import drop_signature, replace_family, saved, stored_names
 from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string
-from .master_deltas import Redrawn, StoredGlyph, Tally, as_drawn, check_steps, order_of, rounded_deltas
+from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, order_of, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variable_glyf import Quadratics
 
@@ -50,24 +50,17 @@ class VariableSummary:
 
     Attributes:
         glyphs: those that were replaced.
-        composites: those asked for that are made of components, all of them replaced.
-        left: why the others have their old outlines.
+        left: why others have their old outlines; not composites whose components were all replaced.
     """
 
     glyphs: dict[str, StoredGlyph] = field(default_factory=dict)
-    composites: tuple[str, ...] = ()
     left: dict[str, str] = field(default_factory=dict)
 
     @property
-    def largest_distance(self) -> float | None:
-        """The largest distance of any glyph; None if there is none."""
-        return max((glyph.distance for glyph in self.glyphs.values()), default=None)
-
-    @property
-    def tally(self) -> Tally | None:
-        """Points and kinks of all glyphs replaced; None where they were not compared."""
+    def tally(self) -> IntArray | None:
+        """Of all glyphs replaced; None where they were not compared."""
         found = [glyph.tally for glyph in self.glyphs.values() if glyph.tally is not None]
-        return sum(found[1:], found[0]) if found else None
+        return np.sum(found, axis=0) if found else None
 
 
 def to_variable_font(
@@ -77,7 +70,6 @@ def to_variable_font(
     *,
     tolerance: float = 0.5,
     family: str | None = None,
-    with_contours: bool = True,
 ) -> tuple[bytes, VariableSummary]:
     """The font as a file's bytes; the same input gives the same bytes.
 
@@ -90,7 +82,6 @@ def to_variable_font(
             contours with bounds, how far from their source. A glyph that cannot be so close is written as close as it
             was found, see ``distance``, or where it has bounds stays as it is.
         family: its new family name; None keeps the source's.
-        with_contours: whether the summary has what is drawn, which is much of a large font.
 
     Raises:
         OutputError: the font is not variable, or has the other kind of outlines.
@@ -98,8 +89,7 @@ def to_variable_font(
     """
     if (own := flavour_of(source)) != flavour:
         raise OutputError(f"has the outlines of {own}, not of {flavour}", font=str(source.path))
-    glyphs: dict[str, StoredGlyph] = {}
-    composites, left = [], {}
+    glyphs, left = dict[str, StoredGlyph](), dict[str, str]()
     with reusing(source.path, source.kind):
         font = source.tables()
         font.recalcBBoxes = False
@@ -122,12 +112,9 @@ def to_variable_font(
                 old = [part for part in parts if part not in redrawn]
                 if old:
                     left[name] = f"its component {old[0]} keeps its outline"
-                else:
-                    composites.append(name)
                 continue
             try:
-                found = write(stored, new)
-                glyphs[name] = found if with_contours else replace(found, contours=(), inner=())
+                glyphs[name] = write(stored, new)
             except GlyphsplineError as error:
                 left[name] = error.message
             except np.linalg.LinAlgError:
@@ -137,7 +124,7 @@ def to_variable_font(
         if family is not None:
             replace_family(font, family)
         data = saved(font)
-    return data, VariableSummary(glyphs, tuple(composites), left)
+    return data, VariableSummary(glyphs, left)
 
 
 def flavour_of(source: Font) -> Flavour:
@@ -229,13 +216,12 @@ class CharStrings2:
             )
         put_string(self._strings, name, new)
         drawn = [as_drawn(masters, each, PARTS) for each in steps]
-        stored = tuple(MasterContour(points, c.degrees) for points, c in zip(drawn, contours, strict=True))
         # Convex, and multilinear between the corners of the grid: largest at one of them, and at a control point.
         corners = masters.weights_at(masters.grid())
         moved = [corners @ (now - c.points).reshape(len(masters), -1) for now, c in zip(drawn, contours, strict=True)]
         far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
         bounds = [bound + each for bound, each in zip(redrawn.bounds, far, strict=False)]
-        return StoredGlyph(stored, inner, max(far, default=0.0), max(bounds, default=None), tallied)
+        return StoredGlyph(inner, max(far, default=0.0), max(bounds, default=None), tallied)
 
     def _place(self, masters: Masters, old: Any) -> tuple[int, list[int]]:
         """The index of the item of the store that has just their regions, and the numbers of masters in its order."""

@@ -65,7 +65,7 @@ class Quadratics:
         if kept and len(kept) == len(redrawn.contours):
             raise GlyphsplineError(NOTHING_NEW, glyph=name)
         drawn = [
-            kept[c].as_stored() if c in kept else stored_points(masters, contour, inner, shift)
+            (kept[c].steps, kept[c].on) if c in kept else stored_points(masters, contour, inner, shift)
             for c, (contour, inner) in enumerate(zip(redrawn.contours, redrawn.inner, strict=True))
         ]
         none = np.zeros((len(masters), 0, 2), dtype=np.int64)
@@ -99,9 +99,7 @@ class Quadratics:
         self._gvar.put(self._font.getGlyphID(name), tuples)
         far = max((now - before for now, before in zip(redrawn.bounds, wanted, strict=True)), default=0.0)
         bound = max(redrawn.bounds, default=0.0)
-        return StoredGlyph(
-            redrawn.contours, redrawn.inner, far, *((bound, redrawn.tally) if compared else (None, None))
-        )  # fmt: skip
+        return StoredGlyph(redrawn.inner, far, *((bound, redrawn.tally) if compared else (None, None)))
 
     def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
         """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :func:`in_quadratics`."""
@@ -159,7 +157,6 @@ def own_contours(record: Record) -> dict[int, Own]:
     steps = rounded_deltas(masters, record.drawn[:, :-PHANTOMS], 1)
     found, pen = dict[int, Own](), ContourPen(masters=len(masters))
     for a, b in record.spans:
-        turned = bool(every[b - 1] and not every[a])
         whole, degrees, implied = quadratics(points[:, a:b], every[a:b])
         number = len(pen.stacks)
         pen.contour(whole, degrees)
@@ -168,10 +165,9 @@ def own_contours(record: Record) -> dict[int, Own]:
         read, wanted = pen.stacks[number].points, [each.points for each in masters.contours[number : number + 1]]
         if not any(read.shape == each.shape and np.abs(read - each).max() <= NEAR for each in wanted):
             return {}
-        order = np.roll(np.arange(a, b), int(turned))
         known = len(pen.stacks[number]) == len(degrees)
         implied = implied if known else np.zeros(len(pen.stacks[number]), dtype=bool)
-        found[number] = Own(steps[:, order], every[order], slice(a, b), known, implied, turned)
+        found[number] = Own(steps[:, a:b], every[a:b], slice(a, b), known, implied)
     return found
 
 
