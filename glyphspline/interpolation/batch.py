@@ -43,7 +43,7 @@ def run_batch(
         method: of degree 3, variant 1 to 3. peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
         tolerances: (K,) residual tolerances; NaN is replaced by the default one.
     """
-    from .kernels import driver  # at the first call, as it imports the compiler
+    from .kernels import blocks, driver  # at the first call, as they import the compiler
 
     (total, d), count, closed = points.shape, len(offsets) - 1, method.closed
     tangents = NO_TANGENTS
@@ -59,9 +59,9 @@ def run_batch(
 
     def work(part: tuple[int, int]) -> Any:
         first, stop = part
-        blocks = -(-int(np.diff(offsets[first : stop + 1]).max(initial=1)) // driver.LANES)  # of the largest polygon
+        most = total if count == 1 else int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max(initial=1))
         # NumPy asks for huge pages, which compiled code does not: passes over 60,000 vertices take a fifth less time.
-        memory = np.empty(blocks * (driver.BLOCK + 3 * driver.STRIDE * (d + d % 2)))
+        memory = np.empty(-(-most // blocks.LANES) * (blocks.BLOCK + 3 * blocks.STRIDE * (d + d % 2)))
         return driver.run(first, stop, given, tuple(found), memory)
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
