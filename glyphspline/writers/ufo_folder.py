@@ -209,7 +209,7 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
     main = f"{unused_stem(f'{family} {styles[default]}', taken)}.ufo"
     for at in every:
         style, own = f"{family} {styles[at]}", at != default and at not in layered
-        document.addSourceDescriptor(
+        descriptor = document.addSourceDescriptor(
             filename=f"{unused_stem(style, taken)}.ufo" if own else main,
             name=style,
             familyName=family,
@@ -217,12 +217,6 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
             location={axis.name: on_axis(axis, x) for axis, x in zip(axes, at, strict=True)},
             layerName=styles[at] if at in layered else None,
         )
-    for number, (name, location) in enumerate(source.instances.items() if isinstance(source, Font) else ()):
-        user = {axis.name: on_axis(axis, axis.normalised(location.get(axis.tag, axis.default))) for axis in axes}
-        document.addInstanceDescriptor(
-            name=f"instance_{number}", familyName=family, styleName=name, designLocation=user
-        )
-    for at, descriptor in zip(every, document.sources, strict=True):
         if at not in layered:
             writer = _opened(folder / str(descriptor.filename), source, family, styles[at])
             layers = {"public.default": writer.getGlyphSet()}
@@ -235,6 +229,11 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
                     if place in of_glyph[name]:
                         _write_master(name, new, of_glyph[name].index(place), glyphs)
             _close(writer, layers, list(redrawn))
+    for number, (name, location) in enumerate(source.instances.items() if isinstance(source, Font) else ()):
+        user = {axis.name: on_axis(axis, axis.normalised(location.get(axis.tag, axis.default))) for axis in axes}
+        document.addInstanceDescriptor(
+            name=f"instance_{number}", familyName=family, styleName=name, designLocation=user
+        )
     document.write(folder / f"{unused_stem(family, set())}.designspace")
 
 

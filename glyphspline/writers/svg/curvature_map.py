@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 from math import floor
 from textwrap import wrap
@@ -187,7 +187,6 @@ def largest_curvature(glyph: GlyphResult) -> float | None:
     return max(known) * glyph.outline.metrics.units_per_em if known else None
 
 
-@cache
 def _styles(em: float) -> list[str]:
     """The beginnings of a comb's paths, in their order."""
     return [
