@@ -12,7 +12,6 @@ share, are at these in layers of the default's UFO. Components are decomposed.
 
 from __future__ import annotations
 
-import math
 import re
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -37,6 +36,7 @@ from ..readers import Font, Source
 from ..types import MadeOnDemand
 from .back.nodes import as_number, nodes_of, smooth_ends
 from .font.master_deltas import Redrawn
+from .json_file import finite
 
 LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"
@@ -168,7 +168,7 @@ def _lib_entry(contour: ContourResult) -> dict[str, Any]:
 
 def _plain(values: dict[str, Any]) -> dict[str, Any]:
     """The values that a property list can store: neither None nor infinite."""
-    return {k: v for k, v in values.items() if not (v is None or (isinstance(v, float) and not math.isfinite(v)))}
+    return {name: value for name, value in values.items() if finite(value) is not None}
 
 
 def unlike_regions(masters: Masters) -> str | None:
