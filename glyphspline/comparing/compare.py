@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,13 +11,16 @@ import numpy as np
 from ..checks.kinds import KINK, Thresholds
 from ..curves.pairing import ROUNDING
 from ..errors import GlyphsplineError, is_positive, require
-from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.contour_arrays import ContourArrays
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
 from .difference import PER_EM, SIDES, Apart, Difference, Turn
 
 DIRECTIONS = 16
 """Directions in which contours are measured to pair them."""
+
+KINKS = Thresholds()
+"""A kink is what :func:`glyphspline.check` finds without other thresholds."""
 
 
 def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Difference:
@@ -41,65 +44,40 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
         >>> gs.compare(old.outline("uni9F8D"), new.outline("uni9F8D")).contours_gone
         ()
     """
-    return compare_many([old], [new], tolerance)[0]
-
-
-def compare_many(old: Sequence[Outline], new: Sequence[Outline], tolerance: float | None = None) -> list[Difference]:
-    """As :func:`compare`, of many pairs at once; the result of a pair does not depend on the others."""
     require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
-    found, moved, changed = list[Difference](), list[ContourArrays](), list[int]()
-    for k, (a, b) in enumerate(zip(old, new, strict=True)):
-        scale = a.metrics.units_per_em / b.metrics.units_per_em
-        mine, its = a.arrays, b.arrays
-        its = its if scale == 1 else its._replace(points=its.points * scale)
-        identical = all(u.tobytes() == v.tobytes() or np.array_equal(u, v) for u, v in zip(mine, its, strict=True))
-        codes = tuple(sorted({*a.unicodes, *b.unicodes}))
-        found.append(Difference(
-            a.name, a.gid, b.name, b.gid, codes, identical, 0.0, 0.0, None, a.advance, b.advance * scale, scale
-        ))  # fmt: skip
-        if not identical:
-            moved.append(its)
-            changed.append(k)
-    if changed:
-        one, other = ([outlines[k] for k in changed] for outlines in (old, new))
-        facts = _changed(one, other, moved, [found[k].scale for k in changed], tolerance)
-        for k, of_pair in zip(changed, facts, strict=True):
-            found[k] = replace(found[k], **of_pair)
-    return found
+    scale = old.metrics.units_per_em / new.metrics.units_per_em
+    mine, its = old.arrays, new.arrays
+    its = its if scale == 1 else its._replace(points=its.points * scale)
+    identical = all(u.tobytes() == v.tobytes() or np.array_equal(u, v) for u, v in zip(mine, its, strict=True))
+    codes = tuple(sorted({*old.unicodes, *new.unicodes}))
+    found = Difference(
+        old.name, old.gid, new.name, new.gid, codes, identical, 0.0, 0.0, None, old.advance, new.advance * scale, scale
+    )
+    return found if identical else replace(found, **_changed(old, new, its, scale, tolerance))
 
 
-def _changed(
-    old: Sequence[Outline], new: Sequence[Outline], moved: Sequence[ContourArrays], scales: Sequence[float],
-    tolerance: float | None,
-) -> Iterator[dict[str, Any]]:  # fmt: skip
-    """How outlines differ whose contours are not the same; ``moved``: the contours of the new ones, scaled."""
+def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, tolerance: float | None) -> dict[str, Any]:
+    """How outlines differ whose contours are not the same; ``its``: the contours of the new one, scaled."""
     from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
     from .outline_distance import outline_distance
 
-    for outline, its in zip(old, moved, strict=True):
-        far = np.max([np.abs(contours.points).max(initial=0.0) for contours in (outline.arrays, its)])
-        if not far < outline.metrics.units_per_em * PER_EM / ROUNDING:
-            raise GlyphsplineError(f"coordinates up to {far:.3g} are too large to be compared", glyph=outline.name)
-    every, other = joined([outline.arrays for outline in old]), joined(moved)
-    firsts = offsets_of([len(outline.contours) for outline in old])
-    others = offsets_of([len(outline.contours) for outline in new])
-    cubics, other_cubics = all_cubics(every), all_cubics(other)
-    hulls, other_hulls = extents(cubics, every.offsets), extents(other_cubics, other.offsets)
-    kinks, other_kinks = turns(old), turns(new, scales)
-    for g, em in enumerate(outline.metrics.units_per_em for outline in old):
-        bound, seen, x, y, side, contour, near_x, near_y = outline_distance(old[g].arrays, moved[g], em / 1000).tolist()
-        bound += old[g].snapped + scales[g] * new[g].snapped
-        costs = np.abs(hulls[firsts[g] : firsts[g + 1], None] - other_hulls[others[g] : others[g + 1]]).max(axis=2)
-        # Share of the em by which the extents of two contours may differ that are partners.
-        gone, came = without_partner(costs, 0.1 * em)
-        # Share of the em by which a kink may move with its outline and still be the same.
-        reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, 0.01 * em))
-        turns_gone, turns_new = unmatched(kinks[g], other_kinks[g], reach)
-        worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
-        yield {
-            "bound": bound, "seen": seen, "worst": worst, "contours_gone": gone, "contours_new": came,
-            "kinks_gone": turns_gone, "kinks_new": turns_new,
-        }  # fmt: skip
+    mine, em = old.arrays, old.metrics.units_per_em
+    far = np.max([np.abs(contours.points).max(initial=0.0) for contours in (mine, its)])
+    if not far < em * PER_EM / ROUNDING:
+        raise GlyphsplineError(f"coordinates up to {far:.3g} are too large to be compared", glyph=old.name)
+    bound, seen, x, y, side, contour, near_x, near_y = outline_distance(mine, its, em / 1000).tolist()
+    bound += old.snapped + scale * new.snapped
+    hulls, other_hulls = (extents(all_cubics(contours), contours.offsets) for contours in (mine, its))
+    # Share of the em by which the extents of two contours may differ that are partners.
+    gone, came = without_partner(np.abs(hulls[:, None] - other_hulls).max(axis=2), 0.1 * em)
+    # Share of the em by which a kink may move with its outline and still be the same.
+    reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, 0.01 * em))
+    turns_gone, turns_new = unmatched(turns(old), turns(new, scale), reach)
+    worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
+    return {
+        "bound": bound, "seen": seen, "worst": worst, "contours_gone": gone, "contours_new": came,
+        "kinks_gone": turns_gone, "kinks_new": turns_new,
+    }  # fmt: skip
 
 
 def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:
@@ -115,13 +93,12 @@ def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:
         return np.empty((len(offsets) - 1, DIRECTIONS + 1))
     weights, starts, counts = bernstein(4)[:, :4], 4 * offsets[:-1], 4 * np.diff(offsets)
     x, y = (sum(weights[k] * cubics[:, k, axis, None] for k in range(4)).ravel() for axis in range(2))
-    found = []
-    for angle in np.pi * np.arange(DIRECTIONS // 2) / (DIRECTIONS // 2):
-        along = np.cos(angle) * x + np.sin(angle) * y
-        found += [np.maximum.reduceat(along, starts), -np.minimum.reduceat(along, starts)]
+    angles = np.pi * np.arange(DIRECTIONS // 2) / (DIRECTIONS // 2)
+    along = np.cos(angles) * x[:, None] + np.sin(angles) * y[:, None]
+    most, least = np.maximum.reduceat(along, starts), np.minimum.reduceat(along, starts)
     x, y = x - np.repeat(x[starts], counts), y - np.repeat(y[starts], counts)  # so that each begins and ends at 0
     areas = np.add.reduceat(np.roll(x, 1) * y - np.roll(y, 1) * x, starts) / 2
-    return np.column_stack([*found, np.sqrt(np.abs(areas))])
+    return np.column_stack([most, -least, np.sqrt(np.abs(areas))])
 
 
 def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tuple[int, ...]]:
@@ -134,22 +111,19 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
     return tuple(sorted(gone)), tuple(sorted(came))
 
 
-def turns(outlines: Sequence[Outline], scales: Sequence[float] | None = None) -> list[list[Turn]]:
-    """The kinks of outlines, as :func:`glyphspline.check` finds them; points are multiplied by the scales."""
+def turns(outline: Outline, scale: float = 1.0) -> list[Turn]:
+    """The kinks of an outline, as :func:`glyphspline.check` finds them; their points are multiplied by the scale."""
     from ..checks.segments import CONTOUR, PLACE, VALUE, WHAT, Segments, joint_findings
     from ..outlines.segments import all_cubics
 
-    contours = joined([outline.arrays for outline in outlines])
-    firsts = offsets_of([len(outline.contours) for outline in outlines])
-    cubics = all_cubics(contours)
-    limits = Thresholds().limits(outlines[0].metrics.units_per_em)
-    table = joint_findings(Segments.of(cubics, contours), limits)
-    found: list[list[Turn]] = [[] for _ in outlines]
+    cubics = all_cubics(outline.arrays)
+    limits = KINKS.limits(outline.metrics.units_per_em)
+    table = joint_findings(Segments.of(cubics, outline.arrays), limits)
+    found = []
     for row in table[table[:, WHAT] == KINK]:
         contour, segment = int(row[CONTOUR]), int(row[PLACE])
-        g = int(np.searchsorted(firsts, contour, side="right")) - 1
-        x, y = (cubics[contours.offsets[contour] + segment, 0] * (scales[g] if scales else 1.0)).tolist()
-        found[g].append(Turn(contour - int(firsts[g]), segment, (x, y), float(row[VALUE])))
+        x, y = (cubics[outline.arrays.offsets[contour] + segment, 0] * scale).tolist()
+        found.append(Turn(contour, segment, (x, y), float(row[VALUE])))
     return found
 
 

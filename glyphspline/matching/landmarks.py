@@ -54,7 +54,7 @@ class Landmarks:
         places: (n,) of the landmarks, ascending; all joints are among them, and the extrema between joints.
         weights: (n,) what it costs to leave a landmark without a partner; 0 for joints that nothing distinguishes.
         points: (n, 2). before, after: (n,) direction on both sides, in radians, unwrapped: it tells how far the contour
-            turned from its start. lengths: (n,) along the contour, as parts of its whole length.
+            turned from its start.
     """
 
     def __init__(self, contour: Contour, em: float) -> None:
@@ -119,7 +119,6 @@ class Landmarks:
         self.places: FloatArray = every[order]
         self.weights: FloatArray = np.concatenate([weights, np.full(len(places), EXTREMUM)])[order]
         self.points: FloatArray = self.contour.at(self.places)
-        self.lengths: FloatArray = self.rows(self.places)[:, 0] / self.length
         self.before, self.after = self._direction(-1), self._direction(1)
 
     def _direction(self, side: int) -> FloatArray:
@@ -168,7 +167,8 @@ class Landmarks:
 
     def table(self, which: IntArray) -> FloatArray:
         """(2k, 4) weight, length and directions of landmarks in two laps, for :func:`.alignment.cheapest_pairs`."""
-        rows = np.stack([self.weights, self.lengths, self.before, self.after], axis=1)[which]
+        lengths = self.rows(self.places)[:, 0] / self.length
+        rows = np.stack([self.weights, lengths, self.before, self.after], axis=1)[which]
         return np.concatenate([rows, rows + np.array([0.0, 1.0, self._lap_turn, self._lap_turn])])
 
     def lap(self, first: int) -> tuple[FloatArray, FloatArray]:

@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from io import StringIO
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -50,16 +50,9 @@ STRAIGHT = 1e-9
 _metadata = threading.Lock()
 
 
-class Piece(NamedTuple):
-    """An entity to be: a LINE if ``degree`` is 1, a clamped SPLINE if it is 3, or a closed LWPOLYLINE if 0.
-
-    Attributes:
-        points: (n, 2) control points in font units. knots: (n + degree + 1,) of a SPLINE.
-    """
-
-    degree: int
-    points: FloatArray
-    knots: FloatArray
+Piece = tuple[FloatArray, FloatArray]
+"""An entity to be, in font units: control points (n, 2) and knots (n + 4,) of a clamped SPLINE; or the points of a LINE
+or a closed LWPOLYLINE, and no knots."""
 
 
 def to_dxf(
@@ -107,7 +100,7 @@ def write(result: GlyphResult, settings: Settings) -> str:
     curves = Contours(without_spurs(contour.curve) for contour in result.contours).arrays
     if settings.dxf == "polyline":
         flatness = settings.flatness_for(result.outline.metrics.units_per_em)
-        drawn = [[Piece(0, points, np.empty(0))] for points in polygons_of(flattened(curves, flatness)[0])]
+        drawn = [[(points, np.empty(0))] for points in polygons_of(flattened(curves, flatness)[0])]
     else:
         draw = _arcs if settings.dxf == "arcs" else _whole
         drawn = [draw(spline) if spline else [] for spline in replace(result.arrays, curves=curves).splines()]
@@ -121,7 +114,7 @@ def write(result: GlyphResult, settings: Settings) -> str:
             document.header["$MEASUREMENT"] = int(unit != "in")
             for layer, colour in zip(LAYERS, COLOURS, strict=True):
                 document.layers.add(layer, color=colour)
-            _fill(document, drawn, holes(result), scale)
+            _fill(document, drawn, holes(result), scale, settings.dxf)
             text = StringIO()
             document.write(text)
         finally:
@@ -129,21 +122,21 @@ def write(result: GlyphResult, settings: Settings) -> str:
     return text.getvalue()
 
 
-def _fill(document: Any, drawn: Sequence[Sequence[Piece]], counters: BoolArray, scale: float) -> None:
+def _fill(document: Any, drawn: Sequence[Sequence[Piece]], counters: BoolArray, scale: float, kind: DxfKind) -> None:
     space = document.modelspace()
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     for number, (contour, hole) in enumerate(zip(drawn, counters.tolist(), strict=True), 1):
         layer, entities = {"layer": HOLES if hole else OUTLINES}, []
-        for piece in contour:
-            points = piece.points * scale + 0.0
+        for control_points, knots in contour:
+            points = control_points * scale + 0.0
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
-            if piece.degree == 0:
+            if kind == "polyline":
                 entities.append(space.add_lwpolyline(points.tolist(), "xy", close=True, dxfattribs=layer))
-            elif piece.degree == 1:
+            elif not len(knots):
                 entities.append(space.add_line(*points.tolist(), dxfattribs=layer))
             else:
-                spline = space.add_spline(degree=piece.degree, dxfattribs={**layer, "flags": PLANAR})
-                spline.control_points, spline.knots = points.tolist(), (piece.knots * scale).tolist()
+                spline = space.add_spline(degree=3, dxfattribs={**layer, "flags": PLANAR})
+                spline.control_points, spline.knots = points.tolist(), (knots * scale).tolist()
                 entities.append(spline)
         if len(entities) > 1:
             document.groups.new(f"CONTOUR-{number}").extend(entities)
@@ -168,14 +161,15 @@ def holes(result: GlyphResult) -> BoolArray:
 
 def _whole(spline: Spline) -> list[Piece]:
     clamped = spline.clamped()
-    return [Piece(clamped.degree, clamped.control_points, clamped.full_knots)]
+    return [(clamped.control_points, clamped.full_knots)]
 
 
 def _arcs(spline: Spline) -> list[Piece]:
     """The spline cut at corners and at the ends of lines, which are among its triple knots, and at its seam."""
     from ..curves.cubics import turns  # here and not above: the package opens without a compiler
 
-    ((_, points, knots),) = _whole(spline)
+    clamped = spline.clamped()
+    points, knots = clamped.control_points, clamped.full_knots
     cubics, starts = spline.to_bezier(), spline.knots[spline.spans]
     bends = np.abs(np.diff(cubics, 2, axis=1)).max(axis=(1, 2))
     lines = bends <= STRAIGHT * np.abs(cubics[:, 3] - cubics[:, 0]).max(axis=1)
@@ -188,9 +182,9 @@ def _arcs(spline: Spline) -> list[Piece]:
         (j, k) for j, k in zip(joints.tolist(), at.tolist(), strict=True) if k == len(cubics) or broken[k]
     ]):  # fmt: skip
         if last - first == 1 and lines[first]:
-            found.append(Piece(1, points[[a, b]], np.empty(0)))
+            found.append((points[[a, b]], np.empty(0)))
         else:
-            found.append(Piece(3, points[a : b + 1], knots[[a + 1, *range(a + 1, b + 4), b + 3]] - knots[a + 1]))
+            found.append((points[a : b + 1], knots[[a + 1, *range(a + 1, b + 4), b + 3]] - knots[a + 1]))
     return found
 
 

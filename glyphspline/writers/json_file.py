@@ -84,7 +84,5 @@ def _spline(spline: Spline, scale: float) -> dict[str, Any]:
 
 def finite(value: Any) -> Any:
     """A measure as a plain value of Python; None if it is not finite."""
-    if value is None or isinstance(value, bool):
-        return value
     plain = value.item() if hasattr(value, "item") else value
-    return plain if math.isfinite(plain) else None
+    return None if isinstance(plain, float) and not math.isfinite(plain) else plain

@@ -12,7 +12,6 @@ share, are at these in layers of the default's UFO. Components are decomposed.
 
 from __future__ import annotations
 
-import math
 import re
 import shutil
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -37,6 +36,7 @@ from ..readers import Font, Source
 from ..types import MadeOnDemand
 from .back.nodes import as_number, nodes_of, smooth_ends
 from .font.master_deltas import Redrawn
+from .json_file import finite
 
 LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"
@@ -168,7 +168,7 @@ def _lib_entry(contour: ContourResult) -> dict[str, Any]:
 
 def _plain(values: dict[str, Any]) -> dict[str, Any]:
     """The values that a property list can store: neither None nor infinite."""
-    return {k: v for k, v in values.items() if not (v is None or (isinstance(v, float) and not math.isfinite(v)))}
+    return {name: value for name, value in values.items() if finite(value) is not None}
 
 
 def unlike_regions(masters: Masters) -> str | None:
@@ -209,7 +209,7 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
     main = f"{unused_stem(f'{family} {styles[default]}', taken)}.ufo"
     for at in every:
         style, own = f"{family} {styles[at]}", at != default and at not in layered
-        document.addSourceDescriptor(
+        descriptor = document.addSourceDescriptor(
             filename=f"{unused_stem(style, taken)}.ufo" if own else main,
             name=style,
             familyName=family,
@@ -217,12 +217,6 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
             location={axis.name: on_axis(axis, x) for axis, x in zip(axes, at, strict=True)},
             layerName=styles[at] if at in layered else None,
         )
-    for number, (name, location) in enumerate(source.instances.items() if isinstance(source, Font) else ()):
-        user = {axis.name: on_axis(axis, axis.normalised(location.get(axis.tag, axis.default))) for axis in axes}
-        document.addInstanceDescriptor(
-            name=f"instance_{number}", familyName=family, styleName=name, designLocation=user
-        )
-    for at, descriptor in zip(every, document.sources, strict=True):
         if at not in layered:
             writer = _opened(folder / str(descriptor.filename), source, family, styles[at])
             layers = {"public.default": writer.getGlyphSet()}
@@ -235,6 +229,11 @@ def _write(source: Source, redrawn: Mapping[str, Redrawn], folder: Path, family:
                     if place in of_glyph[name]:
                         _write_master(name, new, of_glyph[name].index(place), glyphs)
             _close(writer, layers, list(redrawn))
+    for number, (name, location) in enumerate(source.instances.items() if isinstance(source, Font) else ()):
+        user = {axis.name: on_axis(axis, axis.normalised(location.get(axis.tag, axis.default))) for axis in axes}
+        document.addInstanceDescriptor(
+            name=f"instance_{number}", familyName=family, styleName=name, designLocation=user
+        )
     document.write(folder / f"{unused_stem(family, set())}.designspace")
 
 

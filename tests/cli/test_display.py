@@ -173,7 +173,8 @@ def test_the_atlas_is_made_and_captioned_by_the_options(
     given: list[str], words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     drawn: list[gs.GlyphResult] = []
-    monkeypatch.setattr(atlas, "write_atlas", lambda path, glyphs, scale, **_: len(drawn.__iadd__(glyphs)))
+    monkeypatch.setattr(atlas, "atlas_pages", lambda glyphs, scale, **_: drawn.__iadd__(glyphs))
+    monkeypatch.setattr(atlas, "write_pages", lambda path, pages: len(pages))
     font = str(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
     run = CliRunner().invoke(app, ["atlas", font, "--text", "O", *given, "--out", str(tmp_path / "a.pdf")])
     assert run.exit_code == 0, run.output
@@ -217,7 +218,8 @@ def test_an_atlas_is_a_pdf_on_the_scale_asked_for(tmp_path: Path, monkeypatch: p
     assert "an atlas is a PDF" in refused.output
     assert not list(tmp_path.iterdir())
     scales: list[float] = []
-    monkeypatch.setattr(atlas, "write_atlas", lambda path, glyphs, scale, **_: len(scales.__iadd__([scale])))
+    monkeypatch.setattr(atlas, "atlas_pages", lambda glyphs, scale, **_: scales.__iadd__([scale]))
+    monkeypatch.setattr(atlas, "write_pages", lambda path, pages: len(pages))
     for given in ([], ["--comb-scale", "20"]):
         assert CliRunner().invoke(app, [*call, *given, "--out", str(tmp_path / "a.pdf")]).exit_code == 0
     assert scales[1] == 20 / 1024 != scales[0]

@@ -13,7 +13,6 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli.commands import app
-from glyphspline.comparing.compare import compare_many
 from glyphspline.curves.bezier import evaluate, split
 from glyphspline.readers.svg import SvgDrawings
 from glyphspline.runs.folder import entries_of
@@ -201,13 +200,6 @@ def test_kinks_that_came_and_went() -> None:
     assert kink.degrees == pytest.approx(np.degrees(np.arctan2(3, 50)))
     assert gs.compare(kinked, smooth).kinks_gone == (kink,)
     assert gs.compare(kinked, moved(kinked, 0.5, 0)).kinks_new == ()
-
-
-def test_a_pair_does_not_depend_on_the_others(dragon: gs.Outline) -> None:
-    square = gs.Outline("square", contours=[square_contour()])
-    pairs = [(dragon, moved(dragon, 1, 2)), (square, square), (square, dragon), (dragon, square)]
-    together = compare_many([a for a, _ in pairs], [b for _, b in pairs])
-    assert together == [gs.compare(a, b) for a, b in pairs]
 
 
 @pytest.mark.parametrize("far", [1e14, 9e149, np.inf, np.nan])

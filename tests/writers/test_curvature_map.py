@@ -283,9 +283,7 @@ def test_a_pickled_result_is_drawn_alike() -> None:
 
 
 def test_png_shows_the_comb_in_its_colours() -> None:
-    pixels = np.round(
-        imread(io.BytesIO(write_map(disc(200, 1), Settings(), "png", scale=1 / 200, vertices=False)))[..., :3] * 255
-    )
+    pixels = np.round(imread(io.BytesIO(write_map(disc(200, 1), Settings(), "png", scale=1 / 200)))[..., :3] * 255)
     violet = np.array([int(palette()[-1][i : i + 2], 16) for i in (1, 3, 5)])
     body = pixels[100:-250]  # without the title and the colour bar, which shows every colour
     assert (np.abs(body - violet).max(axis=2) < 40).sum() > 500

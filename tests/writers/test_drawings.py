@@ -49,6 +49,7 @@ def test_a_size_is_the_height_and_the_width_is_in_proportion() -> None:
     assert media_box(pdf) == pytest.approx([0, 0, 12 / 25.4 * 72, 20 / 25.4 * 72], abs=0.01)
     assert pixels(Appearance(size="400px")).shape[:2] == (400, 240)
     assert max(pixels(Appearance(size="5000mm")).shape) <= 8000
+    assert pixels(Appearance(size="1px")).shape[:2] == (1, 1)
 
 
 def test_the_size_of_an_em_does_not_depend_on_the_region_shown() -> None:

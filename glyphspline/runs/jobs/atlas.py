@@ -16,8 +16,9 @@ from ...fitting.options import Options
 from ...fitting.results import GlyphResult, as_glyph
 from ...outlines.outline import Outline
 from ...readers import Source
-from ...writers.figures.atlas import write_atlas
-from ...writers.figures.axis_pages import write_axis_atlas
+from ...writers.figures.atlas import atlas_pages
+from ...writers.figures.axis_pages import axis_pages
+from ...writers.figures.basics import write_pages
 from ...writers.settings import BOTH, Maps
 from ...writers.svg.comb import curvature_scale
 from ..engine import Item, Job, Observer, reason, run
@@ -127,14 +128,14 @@ def make_atlas(
         made: Iterator[Any] = (kept.pop(name) if name in kept else next(others).result for name in names)
         shown = _shown(made, notable)
         if axis is not None:
-            pages = write_axis_atlas(path, shown, axis, source.location, scale, heading)
+            pages = axis_pages(shown, axis, source.location, scale, heading)
         else:
             chosen = set(names if total <= PROFILED else ()) if profiles is None else set(profiles)
-            pages = write_atlas(
-                path, shown, scale, heading=heading, combs=maps.comb, in_corners=maps.corner_teeth,
+            pages = atlas_pages(
+                shown, scale, heading=heading, combs=maps.comb, in_corners=maps.corner_teeth,
                 profiled=lambda glyph: glyph.outline.name in chosen,
             )  # fmt: skip
-    return notable._replace(pages=pages)
+        return notable._replace(pages=write_pages(path, pages))
 
 
 def _shown(glyphs: Iterator[Any], notable: Atlas) -> Iterator[Any]:

@@ -53,9 +53,9 @@ class CompareJob(Job[Pair, Found]):
 
     def together(self, tasks: Sequence[Pair], contents: Sequence[Any]) -> Found:
         """The differences of a batch."""
-        from ...comparing.compare import compare_many
+        from ...comparing.compare import compare
 
-        return [*compare_many([one for one, _ in contents], [other for _, other in contents], self.tolerance)]
+        return [compare(old, new, self.tolerance) for old, new in contents]
 
     def failed(self, task: Pair, error: Exception) -> Found:
         """Why a glyph was not compared."""

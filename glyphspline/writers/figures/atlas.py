@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
-from pathlib import Path as FilePath
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from ...outlines.outline import Outline
 from ...types import FloatArray
 from ..settings import Combs
 from ..svg.comb import LONGEST, SOURCE, SPACING, Teeth, legend, shown_by, teeth
-from .basics import ascii_text, blank, colour_bar, comb_patches, outline_patch, write_pages
+from .basics import ascii_text, blank, colour_bar, comb_patches, outline_patch
 
 PAGE = (8.27, 11.69)
 """A4 in inches."""
@@ -45,42 +44,34 @@ Glyph = GlyphResult | tuple[str, str]
 """A result, or the name of a glyph without one and the reason."""
 
 
-def write_atlas(
-    path: FilePath,
+def atlas_pages(
     glyphs: Iterable[Glyph],
     scale: float,
     *,
     heading: str,
-    combs: Combs = "both",
-    in_corners: bool = False,
-    profiled: Callable[[GlyphResult], bool] = lambda glyph: False,
-) -> int:
-    """Write the atlas; the same glyphs give the same bytes.
+    combs: Combs,
+    in_corners: bool,
+    profiled: Callable[[GlyphResult], bool],
+) -> Iterator[Any]:
+    """The pages of the atlas as matplotlib figures.
 
     Args:
-        path: the PDF, replaced when it is complete. heading: the font's name.
+        heading: the font's name.
         glyphs: results in the order of the pages; only one page and the profiled glyphs are held in memory.
         scale: curvature in 1/unit of a full tooth, from :func:`..svg.curvature_map.curvature_scale`.
         combs: of the overview pages; of "both", the source's is a line.
         in_corners: also where a smooth result turns about a corner.
         profiled: whether a glyph has a profile page, after the overview pages.
-
-    Returns:
-        The number of pages.
     """
-
-    def pages() -> Iterator[Any]:
-        chosen: list[GlyphResult] = []
-        rest = iter(glyphs)
-        number = 0
-        while part := list(islice(rest, COLUMNS * ROWS)):
-            number += 1
-            yield overview(part, scale, f"{heading}, page {number}", combs, in_corners=in_corners)
-            chosen += [glyph for glyph in part if isinstance(glyph, GlyphResult) and profiled(glyph)]
-        for glyph in chosen:
-            yield profile(glyph, scale)
-
-    return write_pages(path, pages())
+    chosen: list[GlyphResult] = []
+    rest = iter(glyphs)
+    number = 0
+    while part := list(islice(rest, COLUMNS * ROWS)):
+        number += 1
+        yield overview(part, scale, f"{heading}, page {number}", combs, in_corners=in_corners)
+        chosen += [glyph for glyph in part if isinstance(glyph, GlyphResult) and profiled(glyph)]
+    for glyph in chosen:
+        yield profile(glyph, scale)
 
 
 def overview(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +17,7 @@ from ...types import FloatArray, rounded_up, shortened
 from ..settings import FigureKind
 from ..svg.comb import LONGEST, SOURCE, TOOTH, Teeth, teeth
 from .atlas import OUTLINE, colour_legend, headed, label
-from .basics import ascii_text, blank, comb_patches, outline_patch, saved, write_pages
+from .basics import ascii_text, blank, comb_patches, outline_patch, saved
 
 PAGE = (11.69, 8.27)
 """A4 in inches, broad side down."""
@@ -27,35 +26,27 @@ LEAST_SHOWN = 0.05
 """Degrees from which a turn is more than 0.0."""
 
 
-def write_axis_atlas(
-    path: Path,
+def axis_pages(
     glyphs: Iterable[MastersResult | tuple[str, str]],
     tag: str,
     location: Mapping[str, float],
     scale: float,
     heading: str,
-) -> int:
-    """Write the pages of glyphs along an axis as a PDF; the same glyphs give the same bytes.
+) -> Iterator[Any]:
+    """The pages of glyphs along an axis as matplotlib figures.
 
     Args:
-        path: the PDF, replaced when it is complete. glyphs: results in the order of the pages, or the name of a glyph
-            without one and the reason, for the last page. tag, location, scale, heading: as for :func:`axis_page`.
-
-    Returns:
-        The number of pages.
+        glyphs: results in the order of the pages, or the name of a glyph without one and the reason, for the last page.
+        tag, location, scale, heading: as for :func:`axis_page`.
     """
-
-    def pages() -> Iterator[Any]:
-        failed: list[tuple[str, str]] = []
-        for glyph in glyphs:
-            if isinstance(glyph, MastersResult):
-                yield axis_page(glyph, tag, location, scale, heading)
-            else:
-                failed.append(glyph)
-        if failed:
-            yield failures_page(failed, heading)
-
-    return write_pages(path, pages())
+    failed: list[tuple[str, str]] = []
+    for glyph in glyphs:
+        if isinstance(glyph, MastersResult):
+            yield axis_page(glyph, tag, location, scale, heading)
+        else:
+            failed.append(glyph)
+    if failed:
+        yield failures_page(failed, heading)
 
 
 def axis_page(result: MastersResult, tag: str, location: Mapping[str, float], scale: float, heading: str) -> Any:

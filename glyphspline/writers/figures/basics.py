@@ -52,7 +52,7 @@ def saved(figure: Any, kind: FigureKind, dpi: float = DPI) -> bytes:
 def write_pages(path: FilePath, figures: Iterable[Any]) -> int:
     """Write figures as the pages of a PDF, which is replaced when it is complete; their number.
 
-    One page is held in memory at a time.
+    One page is held in memory at a time. The same figures give the same bytes.
     """
     from matplotlib.backends.backend_pdf import PdfPages
 

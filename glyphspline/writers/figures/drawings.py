@@ -37,7 +37,11 @@ def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: 
     )
     width, height = max(right - left, 1.0), max(top - bottom, 1.0)  # as view_box_value has it
     inches = look.inches(height, outline.metrics.units_per_em, SIZE)
-    figure = blank(inches * width / height, inches)
+    # A height in px is that many pixels. Maximum width and height of a PNG in pixels; a larger one has fewer an inch.
+    dpi = 96.0 if str(look.size or look.em).endswith("px") else DPI
+    dpi = min(dpi, 8000.0 / (inches * max(1.0, width / height)))
+    least = 1.01 / dpi if kind == "png" else 0.0  # a pixel
+    figure = blank(max(inches * width / height, least), max(inches, least))
     axes = figure.add_axes((0, 0, 1, 1))
     axes.set(xlim=(left, left + width), ylim=(bottom, bottom + height))
     axes.set_axis_off()
@@ -47,9 +51,7 @@ def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: 
     for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
         patch.set_clip_on(False)
         axes.add_patch(patch)
-    dpi = 96.0 if str(look.size or look.em).endswith("px") else DPI  # a height in px is that many pixels
-    # Maximum width and height of a PNG in pixels; a larger one has fewer an inch.
-    return saved(figure, kind, min(dpi, 8000.0 / (inches * max(1.0, width / height))))
+    return saved(figure, kind, dpi)
 
 
 def write_map(
@@ -58,14 +60,12 @@ def write_map(
     kind: ImageKind,
     maps: Maps = PLAIN_MAPS,
     scale: float | None = None,
-    *,
-    vertices: bool = True,
 ) -> bytes:
     """The curvature map as a PNG on white, or as a one-page PDF; see :func:`..svg.curvature_map.write_map`."""
     if scale is None:
         scale = maps.scale_for(glyph.outline.metrics.units_per_em) or curvature_scale([glyph])
     figure = blank(SIZE, SIZE, layout="constrained")
-    draw_map(figure.add_subplot(), glyph, maps.comb, scale, vertices, maps.corner_teeth)
+    draw_map(figure.add_subplot(), glyph, maps.comb, scale, maps.corner_teeth)
     for _ in range(LAYOUTS):
         figure.get_layout_engine().execute(figure)
         box = figure.get_tightbbox(figure.canvas.get_renderer())
@@ -75,7 +75,7 @@ def write_map(
     return saved(figure, kind)
 
 
-def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices: bool, in_corners: bool) -> None:
+def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, in_corners: bool) -> None:
     """Draw the map onto matplotlib axes, y up in font units, with a colour bar in 1/em."""
     from matplotlib.collections import LineCollection
 
@@ -93,10 +93,9 @@ def draw_map(axes: Any, glyph: GlyphResult, combs: Combs, scale: float, vertices
         axes.plot(*part.tips[part.cut].T, "k.", markersize=1)
     for part in teeth(glyph, scale, "source") if combs == "both" else ():
         axes.plot(*ring(part.tips).T, color=SOURCE, linewidth=0.6, linestyle=(0, (4, 2)))
-    if vertices:
-        for contour in glyph.contours:
-            points = contour.polygon if whose == "result" else contour.source.points[contour.source.offsets]
-            axes.plot(*points.T, "k.", markersize=1.8)
+    for contour in glyph.contours:
+        points = contour.polygon if whose == "result" else contour.source.points[contour.source.offsets]
+        axes.plot(*points.T, "k.", markersize=1.8)
     axes.autoscale_view()
     axes.set_aspect("equal")
     axes.set_axis_off()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from functools import lru_cache
 from itertools import pairwise
 from math import floor
 from textwrap import wrap
@@ -123,7 +123,9 @@ def write_map(
         layers.append(f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{dots}"/>\n')
     width = min(max(floor((box[2] - box[0]) / (STEP * em)), 1) * STEP, WIDEST) * em
     letters = min(LETTERS * em, width / 8)
-    words = legend(combs, cut, scale * em, corners, largest_curvature(glyph) if whose == "result" else None)
+    measured = [contour.measures.max_curvature for contour in glyph.contours]
+    known = [each for each in measured if each is not None] if whose == "result" else []
+    words = legend(combs, cut, scale * em, corners, max(known) * em if known else None)
     lines = wrap(f"κ{words}", max(int(width / (ADVANCE * letters)), 1))
     said = [_words(0.0, -2.75 - 1.4 * k, "start", line, letters, precision) for k, line in enumerate(lines)]
     height, margin = (3.1 + 1.4 * (len(lines) - 1)) * letters, 0.02 * em
@@ -180,14 +182,6 @@ def _comb(
     return [*layers, "</g>\n"], box, number_cut, corners
 
 
-def largest_curvature(glyph: GlyphResult) -> float | None:
-    """The largest absolute curvature of a result in 1/em, as measured; None if it was not."""
-    found = [contour.measures.max_curvature for contour in glyph.contours]
-    known = [each for each in found if each is not None]
-    return max(known) * glyph.outline.metrics.units_per_em if known else None
-
-
-@cache
 def _styles(em: float) -> list[str]:
     """The beginnings of a comb's paths, in their order."""
     return [

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
+from dataclasses import astuple
 from functools import lru_cache
 from html import escape
 from typing import NamedTuple
@@ -13,7 +14,7 @@ from typing import NamedTuple
 from ...errors import require_choice
 from ...fitting.results import GlyphResult, end_to_end
 from ...outlines.contour_arrays import joined, offsets_of
-from ...outlines.outline import FontMetrics, Outline
+from ...outlines.outline import Outline
 from ..settings import CURRENT, VIEW_BOXES, Appearance, Settings, ViewBox
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
@@ -194,14 +195,12 @@ def number(value: float, precision: int) -> str:
 
 def text(value: str) -> str:
     """Text for element content or a quoted attribute; characters that XML forbids become U+FFFD."""
-    if value.isalnum() and value.isascii():
-        return value
     return escape(_NOT_XML.sub("\ufffd", value))
 
 
 def id_prefix(name: str, gid: int) -> str:
     """Prefix of the ids of a glyph's drawing, which are unique in a document of several drawings."""
-    return f"g{gid}-{name if name.isalnum() and name.isascii() else _NOT_ID.sub('_', name)}"
+    return f"g{gid}-{_NOT_ID.sub('_', name)}"
 
 
 def code_points(outline: Outline) -> str:
@@ -211,16 +210,12 @@ def code_points(outline: Outline) -> str:
 
 def data_attributes(outline: Outline, precision: int) -> str:
     """The glyph's identity and horizontal metrics as ``data-*`` attributes."""
+    em, ascender, descender = astuple(outline.metrics)
+    values = {"advance": outline.advance, "units-per-em": em, "ascender": ascender, "descender": descender}
+    numbers = "".join([f' data-{key}="{number(value, precision)}"' for key, value in values.items()])
     return (
-        f' data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"'
-        f' data-advance="{number(outline.advance, precision)}" {_font_attributes(outline.metrics, precision)}'
+        f' data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"{numbers}'
     )
-
-
-@lru_cache(maxsize=64)
-def _font_attributes(metrics: FontMetrics, precision: int) -> str:
-    values = {"units-per-em": metrics.units_per_em, "ascender": metrics.ascender, "descender": metrics.descender}
-    return " ".join(f'data-{key}="{number(value, precision)}"' for key, value in values.items())
 
 
 def union(a: Box, b: Box | None) -> Box:

@@ -72,13 +72,43 @@ def _written(curves: ContourArrays, closed: BoolArray, precision: int, glyphs: I
     from .path_text import curves_text  # here and not above: the package opens without a compiler
 
     bounds = np.array([0, curves.num_contours]) if glyphs is None else glyphs
-    text, ends, boxes = curves_text(curves, closed, bounds, precision)
-    drawn, found = text.tobytes().decode("ascii"), []
-    for g, ((a, b), box) in enumerate(zip(pairwise(ends.tolist()), boxes.tolist(), strict=True)):
-        inked = box[0] <= box[2]
-        data = drawn[a:b] if a < b or not inked else _of_any_size(curves, closed, bounds[g], bounds[g + 1], precision)
-        found.append(PathData(data, tuple(box) if inked else None))
+    unit, found = 10.0**precision, []
+    whole = curves._replace(points=np.rint(curves.points * unit))
+    text, ends = curves_text(whole, closed, bounds, precision)
+    boxes = _boxes(whole._replace(points=whole.points / unit), bounds)
+    drawn = text.tobytes().decode("ascii")
+    for g, ((a, b), box) in enumerate(zip(pairwise(ends.tolist()), boxes, strict=True)):
+        data = drawn[a:b] if a < b or not box else _of_any_size(curves, closed, bounds[g], bounds[g + 1], precision)
+        found.append(PathData(data, box))
     return found
+
+
+def _boxes(curves: ContourArrays, glyphs: IntArray) -> list[Box | None]:
+    """The tight boxes around glyphs."""
+    from ...outlines.segments import all_cubics  # as above
+
+    cubics, segments = all_cubics(curves), curves.offsets[glyphs]
+    inked = np.diff(segments) > 0
+    if not inked.any():
+        return [None] * len(inked)
+    owners = np.repeat(np.cumsum(inked) - 1, np.diff(segments))
+    low, high = (extreme.reduceat(cubics[:, 0], segments[:-1][inked]) for extreme in (np.minimum, np.maximum))
+    # Few segments reach beyond the ends of all.
+    beyond = (cubics[:, 1:3].min(axis=1) < low[owners]) | (cubics[:, 1:3].max(axis=1) > high[owners])
+    which, axis = np.nonzero(beyond)
+    p0, p1, p2, p3 = cubics[which, :, axis].T
+    a, half_b, c = p3 - 3.0 * p2 + 3.0 * p1 - p0, p2 - 2.0 * p1 + p0, p1 - p0
+    root = np.sqrt(np.maximum(half_b * half_b - a * c, 0.0))
+    # The stable pair q/a and c/q: neither loses digits when a is small, as on a raised quadratic.
+    q = -(half_b + np.where(half_b < 0.0, -root, root))
+    for numerator, denominator in ((q, a), (c, q)):
+        t = np.maximum(numerator / np.where(np.abs(denominator) > np.abs(numerator), denominator, np.inf), 0.0)
+        s = 1.0 - t
+        values = s * s * s * p0 + 3.0 * s * s * t * p1 + 3.0 * s * t * t * p2 + t * t * t * p3
+        np.minimum.at(low, (owners[which], axis), values)
+        np.maximum.at(high, (owners[which], axis), values)
+    found = iter(np.hstack([low, high]).tolist())
+    return [tuple(next(found)) if some else None for some in inked.tolist()]
 
 
 def _of_any_size(curves: ContourArrays, closed: BoolArray, first: int, stop: int, precision: int) -> str:

@@ -72,24 +72,19 @@ def write_pair(text: Text, at: int, letter: int, x: float, y: float, precision: 
 
 
 @compiled
-def curves_text(
-    curves: ContourArrays, closed: BoolArray, glyphs: IntArray, precision: int
-) -> tuple[Text, IntArray, FloatArray]:
+def curves_text(curves: ContourArrays, closed: BoolArray, glyphs: IntArray, precision: int) -> tuple[Text, IntArray]:
     """Path data of the contours, or polylines, of many glyphs.
 
     Args:
-        curves: of all glyphs; an open polyline has a point for each of its ``degrees``.
+        curves: of all glyphs, rounded; an open polyline has a point for each of its ``degrees``.
         closed: (C,) whether a contour ends with Z. glyphs: (G + 1,) where the contours of each glyph begin.
 
     Returns:
-        Text as bytes; (G + 1,) where that of each glyph begins: one with larger coordinates has none; (G, 4) left,
-        bottom, right, top of the rounded curves, infinite the wrong way round without any.
+        Text as bytes; (G + 1,) where that of each glyph begins: one with larger coordinates has none.
     """
-    points, degrees, offsets, starts = curves
-    whole = np.rint(points * 10.0**precision)
-    text = np.empty((len(points) + len(offsets)) * (WIDEST + 2 * precision), dtype=np.uint8)
-    ends, boxes = np.zeros(len(glyphs), dtype=np.int64), np.empty((len(glyphs) - 1, 4))
-    at = 0
+    whole, degrees, offsets, starts = curves
+    text = np.empty((len(whole) + len(offsets)) * (WIDEST + 2 * precision), dtype=np.uint8)
+    ends, at = np.zeros(len(glyphs), dtype=np.int64), 0
     for g in range(len(glyphs) - 1):
         fits = True
         for i in range(starts[glyphs[g]], starts[glyphs[g + 1]]):
@@ -114,44 +109,7 @@ def curves_text(
                 text[at] = 90  # Z
                 at += 1
         ends[g + 1] = at
-        boxes[g] = _bounds(whole, degrees, offsets, starts, glyphs[g], glyphs[g + 1], 10.0**precision)
-    return text[:at], ends, boxes
-
-
-@compiled
-def _bounds(
-    whole: FloatArray, degrees: IntArray, offsets: IntArray, starts: IntArray, first: int, stop: int, unit: float
-) -> FloatArray:
-    """(4,) left, bottom, right, top of contours, from their points in 1 / ``unit``."""
-    box = np.array([np.inf, np.inf, -np.inf, -np.inf])
-    for handles in range(2):  # first all points on the curves: few segments reach beyond them
-        for c in range(first, stop):
-            i = starts[c]
-            for j in range(offsets[c], offsets[c + 1]):
-                degree = degrees[j]
-                end = i + degree if j + 1 < offsets[c + 1] else starts[c]
-                for axis in range(2 if not handles or degree > 1 else 0):
-                    p0 = whole[i, axis] / unit
-                    if not handles:
-                        box[axis], box[axis + 2] = min(box[axis], p0), max(box[axis + 2], p0)
-                        continue
-                    p1, p2 = whole[i + 1, axis] / unit, whole[i + degree - 1, axis] / unit
-                    if min(p1, p2) < box[axis] or max(p1, p2) > box[axis + 2]:
-                        p3 = whole[end, axis] / unit
-                        if degree == 2:
-                            p1, p2 = p0 + (p1 - p0) * (2 / 3), p3 + (p1 - p3) * (2 / 3)
-                        a, half_b, c0 = p3 - 3.0 * p2 + 3.0 * p1 - p0, p2 - 2.0 * p1 + p0, p1 - p0
-                        root = np.sqrt(max(half_b * half_b - a * c0, 0.0))
-                        # The stable pair q/a and c/q: neither loses digits when a is small, as on a raised quadratic.
-                        q = -(half_b - root if half_b < 0.0 else half_b + root)
-                        for numerator, denominator in ((q, a), (c0, q)):
-                            t = numerator / denominator if abs(denominator) > abs(numerator) else 0.0
-                            t = min(max(t, 0.0), 1.0)
-                            s = 1.0 - t
-                            value = s * s * s * p0 + 3.0 * s * s * t * p1 + 3.0 * s * t * t * p2 + t * t * t * p3
-                            box[axis], box[axis + 2] = min(box[axis], value), max(box[axis + 2], value)
-                i += degree
-    return box
+    return text[:at], ends
 
 
 @compiled

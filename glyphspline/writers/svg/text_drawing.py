@@ -46,7 +46,6 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
         if path.text:
             parts.append(f'<path id="{name}" d="{path.text}"/>\n')
     parts.append(f"</defs>\n<g {painting(look, em, float(value.split()[3]))}>\n")
-    drawn = [bool(path.text) for path in paths]
     places = zip(
         range(len(layout)), layout.line.tolist(), layout.which.tolist(), layout.cluster.tolist(),
         layout.origin.tolist(), np.degrees(layout.angle).tolist(), strict=True,
@@ -56,7 +55,7 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
         parts += [
             f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
             for k, _, glyph, cluster, (x, y), angle in own
-            if drawn[glyph]
+            if paths[glyph].text
         ]
         parts.append("</g>\n")
     return "".join([*parts, "</g>\n</svg>\n"]).encode()
