@@ -19,11 +19,19 @@ from glyphspline.curves.cubics import hidden_extrema, turns
 from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.fitting.sharp.corners import find_joints
 from glyphspline.fitting.sharp.font_fit import ONE, TURNING, findings
-from glyphspline.fitting.sharp.font_points import of_points, quadratic_points, rounded_nodes, stored_points
+from glyphspline.fitting.sharp.font_points import (
+    of_points,
+    quadratic_points,
+    rounded_nodes,
+    stored_points,
+    with_cut_lines,
+)
 from glyphspline.fitting.sharp.harmony import AXIS, FIXED, Run, end_jump, harmonise
 from glyphspline.fitting.sharp.run_gates import Limits, misses
 from glyphspline.fitting.sharp.settings import EFFORTS
 from glyphspline.outlines.contour_arrays import ContourArrays
+from glyphspline.outlines.outline import Contours
+from glyphspline.outlines.segments import all_cubics
 from glyphspline.types import FloatArray
 from glyphspline.writers.font.font_file import write_font
 from tests.places import FONTS, GYOSHO
@@ -340,6 +348,14 @@ def test_a_line_ends_earlier_where_the_grid_has_no_control_point_along_it_near_i
     assert far <= 1.0
     a, b = (gs.sample(each, step=0.5) for each in (source, gs.Contour(made.points, made.degrees)))
     assert max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max()) < 1.1
+
+
+def test_what_follows_a_line_that_ends_earlier_keeps_its_shape() -> None:
+    points = np.array([[0.0, 0], [301.3, 7.2], [420, 11], [500, 200], [300, 400]])
+    source = Contours([gs.Contour(points, np.array([1, 2, 1, 1]))]).arrays
+    cut = with_cut_lines(source, {(0, 1): 3})
+    assert cut is not None
+    np.testing.assert_allclose(all_cubics(cut)[2:], all_cubics(source)[1:], atol=1e-9)
 
 
 def test_a_line_end_has_no_new_kink_beside_a_kink_of_the_source_that_is_gone() -> None:

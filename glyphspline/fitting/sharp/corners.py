@@ -106,13 +106,18 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
                 for v in range(masters):
                     turn = max(turn, abs(leaving[v, j, 0] * first_way[1] - leaving[v, j, 1] * first_way[0]))
                 # Masters' lines have one direction if they turn by no more than this from each other, in radians.
-                tied[j], size = not turn < 1e-3, chord(straight, 0, 3)
-                for v in range(masters if tied[j] else 0):  # the line's vectors in the masters
-                    for axis in range(2):
-                        arriving[v, j, axis] = (straight[v, 3, axis] - straight[v, 0, axis]) / size
-                        leaving[v, j, axis] = arriving[v, j, axis]
+                tied[j] = not turn < 1e-3
+                if tied[j]:  # the line's vectors in the masters
+                    arriving[:, j] = (straight[:, 3] - straight[:, 0]) / chord(straight, 0, 3)
+                    leaving[:, j] = arriving[:, j]
         arriving[:, m], leaving[:, m], tied[m] = arriving[:, 0], leaving[:, 0], tied[0]
     return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
+
+
+@compiled
+def turn_between(ax: float, ay: float, bx: float, by: float) -> float:
+    """The angle between two vectors, without sign."""
+    return abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
 
 
 @compiled
@@ -126,7 +131,7 @@ def is_roundings(cubics: FloatArray, degrees: IntArray, j: int) -> bool:
         _, _, ax, ay = directions(own, j - 1, NO_HANDLE)
         bx, by, _, _ = directions(own, j, NO_HANDLE)
         one, two = 3 / degrees[j - 1] * length(ax, ay), 3 / degrees[j] * length(bx, by)
-        turn = abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+        turn = turn_between(ax, ay, bx, by)
         if min(one, two) == 0.0 or turn >= min(SHARP, DEVIATIONS * rounding_turn(one, two)):
             return False
     return True
@@ -284,6 +289,5 @@ def shows(samples: FloatArray, at: int, tolerance: float, angle: float) -> bool:
     x, y = samples[at % N, 0], samples[at % N, 1]
     ax, ay = x - ends[0, 0], y - ends[0, 1]
     bx, by = ends[1, 0] - x, ends[1, 1] - y
-    across = ax * by - ay * bx
-    height = abs(across) / max(np.hypot(ax + bx, ay + by), 1e-9)
-    return abs(np.arctan2(across, ax * bx + ay * by)) >= angle and height >= 2.0 * tolerance
+    height = abs(ax * by - ay * bx) / max(np.hypot(ax + bx, ay + by), 1e-9)
+    return turn_between(ax, ay, bx, by) >= angle and height >= 2.0 * tolerance

@@ -141,10 +141,8 @@ def between(joints: Joints, a: int, b: int, near: float, rounds: int, cubic: Flo
         third = chord(joints.samples, i, j) / 3
         for v in range(len(cubic)):
             p, q = joints.samples[v, i], joints.samples[v, j]
-            for axis in range(2):
-                cubic[v, 0, axis], cubic[v, 3, axis] = p[axis], q[axis]
-                cubic[v, 1, axis] = p[axis] + third * tangents[v, 0, axis]
-                cubic[v, 2, axis] = q[axis] - third * tangents[v, 1, axis]
+            cubic[v, 0], cubic[v, 3] = p, q
+            cubic[v, 1], cubic[v, 2] = p + third * tangents[v, 0], q - third * tangents[v, 1]
     return error
 
 
@@ -204,9 +202,7 @@ def chosen_nodes(
                 price[a], following[a], found[a] = cost, b, cubic
     a = r = 0
     while a < n:
-        places[r] = a
-        for v in range(masters):
-            P[v, r] = found[a, v]
+        places[r], P[:, r] = a, found[a]
         a, r = following[a], r + 1
     places[r] = n
     return r
@@ -268,15 +264,12 @@ def take_settled(
         q = (s + 1) % r
         if settled[s] == settled[q] or (q == 0 and not closed):
             continue
-        for v in range(len(P)):
-            for axis in range(2):
-                move = P[v, s, 3, axis] - P[v, q, 0, axis]
-                if settled[s]:
-                    P[v, q, 0, axis] += move
-                    P[v, q, 1, axis] += move
-                else:
-                    P[v, s, 2, axis] -= move
-                    P[v, s, 3, axis] -= move
+        move = P[:, s, 3] - P[:, q, 0]
+        for k in range(2):
+            if settled[s]:
+                P[:, q, k] += move
+            else:
+                P[:, s, 3 - k] -= move
     return settled
 
 
@@ -300,10 +293,8 @@ def fit_run(
         share[k] = SHARES[tries[k]]
         ease[k] = min(ease[k], EASE[tries[k]])
         ease[k + 1] = EASE[tries[k]]
-    source, whole = cubics[:, i:j].copy(), True
-    before = jumps_of(source, degrees[i:j], closed, em)
-    for v in range(masters):
-        whole = whole and on_grid(source[v], degrees[i:j], closed)
+    source = cubics[:, i:j].copy()
+    before, whole = jumps_of(source, degrees[i:j], closed, em), on_grid(source, degrees[i:j], closed)
     last, ends, most = source, np.arange(n + 1), KEPT + (not whole and (degrees[i:j] == 2).any())
     known, fits = np.zeros((n, SEEN, 2)), np.empty((n, SEEN, masters, 4, 2))
     done, until = np.empty((masters, n, 4, 2)), np.zeros(n, np.int64)
@@ -345,7 +336,7 @@ def fit_run(
             break
         keep_alive(owned)
     kinds = np.array([degrees[i + ends[s]] if ends[s + 1] == ends[s] + 1 else 3 for s in range(len(ends) - 1)])
-    if masters == 1 and on_grid(last[0], kinds, closed):
+    if masters == 1 and on_grid(last, kinds, closed):
         let_meet(last, cubics, degrees, joints, upright, i, closed, ends, start, limits)
     return last, i + ends
 
@@ -482,23 +473,17 @@ def fit_contour(
         j = i + 1
         while j < m and not cuts[j]:
             j += 1
-        closed, whole = i == 0 and j == m and not cuts[0], True
-        for v in range(masters):
-            whole = whole and on_grid(cubics[v, i:j], degrees[i:j], closed)
-        if j == i + 1 and not closed and (degrees[i] == 1 or whole):
-            run, own = cubics[:, i:j].copy(), np.array([i, j])
+        closed, source = i == 0 and j == m and not cuts[0], cubics[:, i:j].copy()
+        if j == i + 1 and not closed and (degrees[i] == 1 or on_grid(source, degrees[i:j], closed)):
+            run, own = source, np.array([i, j])
         elif not fresh[i:j].any():
             a, b = np.searchsorted(last_nodes, i), np.searchsorted(last_nodes, j)
             run, own = last[:, a:b].copy(), np.append(last_nodes[a:b], j)
         else:
             run, own = fit_run(cubics, degrees, joints, upright, i, j, closed, start, limits)
-        for s in range(run.shape[1]):
-            for v in range(masters):
-                found[v, count] = run[v, s]
-            nodes[count], kinds[count], inner[count] = own[s], 3, closed or s > 0
-            if own[s + 1] == own[s] + 1 and degrees[own[s]] == 1:
-                kinds[count] = 1
-            count += 1
-        i = j
+        end = count + run.shape[1]
+        found[:, count:end], nodes[count:end], inner[count:end], inner[count] = run, own[:-1], True, closed
+        kinds[count:end] = np.where((np.diff(own) == 1) & (degrees[own[:-1]] == 1), 1, 3)
+        i, count = j, end
     nodes[count] = m
     return found[:, :count].copy(), kinds[:count], nodes[: count + 1], inner[:count]

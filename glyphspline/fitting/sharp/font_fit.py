@@ -15,7 +15,7 @@ from ...compiled import compiled
 from ...curves.nearest import near_places
 from ...curves.pairing import SHARPNESS, pair_instances
 from ...intrinsics import borrowed, keep_alive
-from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ...outlines.contour_arrays import ContourArrays, joined, lines_and_cubics, offsets_of
 from ...outlines.segments import all_cubics, farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
 from ..faithful import Fits
@@ -82,31 +82,25 @@ def fit_contours(
                 chain = np.concatenate((source[:, k:], source[:, :k]), axis=1)
                 own, held = np.roll(own, -k), np.roll(held, -k)
                 joints = find_joints(chain, own, settings)
-            old, n = last.cubics[:, last.offsets[c] : last.offsets[c + 1]], last.offsets[c + 1] - last.offsets[c]
-            before, at = np.empty((masters, n, 4, 2)), (last.nodes[last.offsets[c] : last.offsets[c + 1]] - k) % m
+            old = last.cubics[:, last.offsets[c] : last.offsets[c + 1]]
+            at = (last.nodes[last.offsets[c] : last.offsets[c + 1]] - k) % m
             order = np.argsort(at)
-            for v in range(masters):
-                for s in range(n):
-                    before[v, s] = old[v, order[s]]
             run, types, nodes, inside = fit_contour(
-                borrowed(chain), own, borrowed(joints), held, borrowed(limits), np.roll(fresh[a:b], -k), before,
-                at[order],
+                borrowed(chain), own, borrowed(joints), held, borrowed(limits), np.roll(fresh[a:b], -k),
+                old[:, order], at[order],
             )  # fmt: skip
             keep_alive((chain, joints))
         # Back to the first joint of the source, or the next node after it.
         r, first = run.shape[1], 0
         while first < r and nodes[first] + k < m:
             first += 1
-        for s in range(r):
-            q = (first + s) % r
-            for v in range(masters):
-                found[v, count + s] = run[v, q]
-            kinds[count + s], inner[count + s] = 1 if types[q] == 1 else 3, inside[q]
-            numbers[count + s] = (nodes[q] + k) % m
-            anchors[count + c + s, 0], anchors[count + c + s, 1] = s, (nodes[q] + k) % m
-        places = anchors[count + c : count + c + r, 1]
+        order, end = (first + np.arange(r)) % r, count + r
+        found[:, count:end], inner[count:end] = run[:, order], inside[order]
+        kinds[count:end], numbers[count:end] = np.where(types[order] == 1, 1, 3), (nodes[order] + k) % m
+        anchors[count + c : end + c, 0], places = np.arange(r), anchors[count + c : end + c, 1]
+        places[:] = numbers[count:end]
         hints, outline = places.copy(), mixed(limits.corners, source)
-        begins = mixed(limits.corners, found[:, count : count + r])
+        begins = mixed(limits.corners, found[:, count:end])
         alike = np.ones(r, dtype=np.bool_)  # the outline may come by here twice
         for s in range(r):
             for v in range(V):
@@ -115,9 +109,8 @@ def fit_contours(
         near_places(V, outline, hints, begins, alike, True, 0.0, 0.0, places)
         if places[0] < 0.0:
             places += m
-        anchors[count + c + r, 0], anchors[count + c + r, 1] = r, places[0] + m
-        count += r
-        ends[c + 1] = count
+        anchors[end + c, 0], anchors[end + c, 1] = r, places[0] + m
+        ends[c + 1] = count = end
     result = Fitted(found[:, :count].copy(), numbers[:count], ends)
     return result, kinds[:count], anchors[: count + len(offsets) - 1], inner[:count]
 
@@ -303,7 +296,6 @@ def _stretch(low: float, high: float, source: ContourArrays, c: int) -> IntArray
 
 
 def chains(cubics: FloatArray, degrees: IntArray, offsets: IntArray) -> ContourArrays:
-    """Closed chains of lines and cubics (r, 4, 2) as contours, with offsets (C + 1,)."""
-    needed = np.ones((len(cubics), 3), dtype=np.bool_)
-    needed[degrees == 1, 1:] = False
-    return ContourArrays(cubics[:, :3][needed], degrees, offsets, offsets_of(degrees)[offsets])
+    """Closed chains of lines, of degree 1, and cubics (r, 4, 2) as contours, with offsets (C + 1,)."""
+    points, kinds = lines_and_cubics(cubics, degrees == 1)
+    return ContourArrays(points, kinds, offsets, offsets_of(kinds)[offsets])

@@ -7,9 +7,10 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import length
 from ...types import FloatArray, IntArray
+from .corners import turn_between
 from .font_chains import SLIP, Quads, ahead, as_cubics, set_moves, set_nodes
 from .nearness import add_samples, shared_feet, squares
-from .run_gates import CORNER, KINK, turn_between
+from .run_gates import CORNER, KINK
 
 SWEEPS = 4
 """Visits of all control points on the grid."""

@@ -9,9 +9,9 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import directions, length
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import NO_HANDLE, SHARP, SMOOTH_KINK, Joints, find_joints, is_roundings
+from .corners import NO_HANDLE, SHARP, SMOOTH_KINK, Joints, find_joints, is_roundings, turn_between
 from .font_curves import alone, set_upright
-from .run_gates import CORNER, KINK, mixed, turn_between
+from .run_gates import CORNER, KINK, mixed
 from .settings import Settings
 
 STEEP = np.radians(1.5)

@@ -23,11 +23,12 @@ from ...curves.cubics import length
 from ...intrinsics import borrowed, keep_alive
 from ...outlines.segments import farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
+from .corners import turn_between
 from .font_chains import Quads, as_cubics, part, relax, set_nodes, set_tangents
 from .font_grid import EXPLICIT, aim, is_kink, round_quads
 from .font_outlines import Given, Stored, is_ring, mean, read_contour, set_unit
 from .nearness import certified
-from .run_gates import CORNER, KINK, mixed, turn_between
+from .run_gates import CORNER, KINK, mixed
 from .settings import Settings
 
 NEAR = (0.7, 0.35, 0.35, 0.0)
@@ -243,9 +244,7 @@ def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tup
             # A control point on a node has no leg there whose turn is seen below.
             if not q.held[s] and (q.c[:, s] == q.node[:, s + end]).all():
                 bad[s], kinks = True, kinks + 1
-        for w in range(K):
-            for axis in range(2):
-                bad[s] = bad[s] or abs(q.c[w, s, axis] - np.rint(q.c[w, s, axis])) > 1e-6
+        bad[s] = bad[s] or (np.abs(q.c[:, s] - np.rint(q.c[:, s])) > 1e-6).any()
         if s > 0 and not q.implied[s] and not (q.held[s] and q.held[s - 1]):
             before, behind = q.node[:, s] - q.c[:, s - 1], q.c[:, s] - q.node[:, s]
             for weights in mixes:
@@ -306,14 +305,15 @@ def fit_run(
     Returns:
         Their number, at most that of a stored source; and their certified distance.
     """
-    n, K, own, stored = j - i, len(given.cubics), j - i + 1, given.stored
-    for k in range(i + 1, j):
-        own += 0 if stored.implied[k] else 1
+    n, K, stored = j - i, len(given.cubics), given.stored
+    own = n + 1 + np.count_nonzero(~stored.implied[i + 1 : j])
     samples, count, least, reached, done = given.joints.samples, 0, np.inf, np.inf, False
-    # In several masters a run is tried without sections too: extrema of all at one parameter are more than most have.
-    # Where nothing is near enough, each segment is a section.
+    # Sections end nowhere inside: extrema of all masters at one parameter are more than most have; then at extrema; and
+    # where nothing is near enough, at all joints.
     for cut in range(1 if K == 1 else 0, 3):
-        ends = sections(given, i, j, cut)
+        stops = given.upright[i : j + 1] & (cut == 1) | (cut == 2)
+        stops[0] = stops[n] = True
+        ends = i + np.flatnonzero(stops)
         if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or reached <= tolerance)):
             continue
         tries, known = np.full(len(ends) - 1, EXPLICIT if cut == 2 else 0), np.full((len(ends) - 1, 4), -1)
@@ -341,19 +341,6 @@ def fit_run(
         return count, reached
     kept = put_points(stored.control[:, i:j], stored.node[:, i:j], stored.implied[i:j], points, on)
     return kept, stored.drift
-
-
-@compiled
-def sections(given: Given, i: int, j: int, cut: int) -> IntArray:
-    """The joints at which sections of a run from joint i to joint j end: none inside, the extrema, or all."""
-    ends, S = np.empty(j - i + 1, dtype=np.int64), 1
-    ends[0] = i
-    for k in range(i + 1, j):
-        if cut == 2 or (cut == 1 and given.upright[k]):
-            ends[S] = k
-            S += 1
-    ends[S] = j
-    return ends[: S + 1]
 
 
 @compiled

@@ -9,7 +9,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.cubics import directions, hidden_extrema, length
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import NO_HANDLE, Joints
+from .corners import NO_HANDLE, Joints, turn_between
 from .harmony import Run, end_jump
 from .nearness import certified
 
@@ -91,12 +91,6 @@ def crosses_handles(cubic: FloatArray) -> bool:
 
 
 @compiled
-def turn_between(ax: float, ay: float, bx: float, by: float) -> float:
-    """The angle between two vectors, without sign."""
-    return abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-
-
-@compiled
 def joint_turn(before: FloatArray, behind: FloatArray) -> float:
     """The turn of the joint of two cubics (1, 4, 2)."""
     _, _, ax, ay = directions(before, 0, NO_HANDLE)
@@ -120,12 +114,10 @@ def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits, 
         if run.closed:
             arc[::2], arc[1::2] = -np.inf, np.inf
     hints = (i + run.places).astype(np.float64)
-    enough, r, m, stays = share * limits.tolerance, len(run.P), source.shape[1], np.ones(len(run.P) + 1, np.bool_)
+    enough, r, m, stays = share * limits.tolerance, len(run.P), source.shape[1], np.empty(len(run.P) + 1, np.bool_)
     for s in range(r + 1):
         q, end = (s, 0) if s < r else (r - 1, 3)
-        for v in range(len(source)):
-            for axis in range(2):
-                stays[s] = stays[s] and P[v, q, end, axis] == source[v, (i + run.places[s]) % m, 0, axis]
+        stays[s] = (P[:, q, end] == source[:, (i + run.places[s]) % m, 0]).all()
     return ~(certified(V, chain, hints, stays, run.held, run.closed, other, arc, enough) <= enough)
 
 
@@ -185,12 +177,11 @@ def jumps_of(cubics: FloatArray, degrees: IntArray, closed: bool, em: float) -> 
 
 @compiled
 def on_grid(cubics: FloatArray, degrees: IntArray, closed: bool) -> bool:
-    """Whether all points of a run are on the grid, but for its ends, which stay."""
-    r = len(cubics)
+    """Whether all points of a run (K, r, 4, 2) are on the grid, but for its ends, which stay."""
+    r = len(degrees)
     for s in range(r):
         for k in range(0 if s > 0 or closed else 1, 4 if s < r - 1 or closed else 3):
-            for axis in range(2):
-                x = cubics[s, k, axis]
-                if abs(x - np.rint(x)) > 1e-6 and (degrees[s] > 1 or k % 3 == 0):
-                    return False
+            off = np.abs(cubics[:, s, k] - np.rint(cubics[:, s, k])) > 1e-6
+            if (degrees[s] > 1 or k % 3 == 0) and off.any():
+                return False
     return True
