@@ -33,9 +33,10 @@ class FactsJob(Job[int, dict[str, Any]]):
         """Outlines. A face that cannot be opened is not opened for each."""
         try:
             (source,) = sources(self.place)
+            read = source.outlines(tasks, errors="return")
         except GlyphsplineError as error:
             return [error] * len(tasks)
-        return [Item(each) if isinstance(each, Outline) else each for each in source.outlines(tasks, errors="return")]
+        return [Item(each) if isinstance(each, Outline) else each for each in read]
 
     def together(self, tasks: Sequence[int], contents: Sequence[Any]) -> dict[str, Any]:
         """Facts from the outlines of glyphs: counts, and unusual glyphs by name.
