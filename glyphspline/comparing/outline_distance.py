@@ -38,6 +38,9 @@ DEEPEST, MOST_HALVINGS = 40, 20_000
 """Halvings of a segment, after which a section's bound counts as it is. Halvings of a glyph's sections, after which
 bounds count as they are: hostile outlines would take minutes."""
 
+GROUP = 16
+"""Segments in a row that have a common box."""
+
 STACK = 64
 """Stretches of a segment that wait to be searched: one a halving, and no parameter can be halved more often."""
 
@@ -57,7 +60,7 @@ class Chains(NamedTuple):
         cubics: (m, 4, 2) the segments of all contours. offsets: (C + 1,) where contours begin in these.
         owners: (m,) the contour of each segment, and beside: (m, 2) the segments before and after it there.
         bends: (m,) as above.
-        boxes: (m, 4) left, bottom, right, top of Bézier points.
+        boxes: (m, 4) left, bottom, right, top of Bézier points. groups: (g, 4) likewise of ``GROUP`` segments in a row.
     """
 
     cubics: FloatArray
@@ -66,18 +69,21 @@ class Chains(NamedTuple):
     beside: IntArray
     bends: FloatArray
     boxes: FloatArray
+    groups: FloatArray
 
 
 def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
     """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,)."""
     boxes = np.concatenate([cubics.min(axis=1), cubics.max(axis=1)], axis=1)
+    starts = np.arange(0, len(cubics), GROUP)
+    low, high = np.minimum.reduceat(boxes[:, :2], starts), np.maximum.reduceat(boxes[:, 2:], starts)
     seconds = cubics[:, :2] - 2 * cubics[:, 1:3] + cubics[:, 2:]
     bends = 0.75 * np.sqrt((seconds * seconds).sum(axis=2)).max(axis=1)
     owners = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
     at, beside = np.arange(len(cubics)), np.empty((len(cubics), 2), dtype=np.int64)
     first, last = offsets[owners], offsets[owners + 1] - 1
     beside[:, 0], beside[:, 1] = np.where(at == first, last, at - 1), np.where(at == last, first, at + 1)
-    return Chains(cubics, offsets, owners, beside, bends, boxes)
+    return Chains(cubics, offsets, owners, beside, bends, boxes, np.concatenate([low, high], axis=1))
 
 
 @inlined
@@ -157,11 +163,16 @@ def nearest_of_outline(
             guess, d = reached(chains.cubics, other, 1.0 - after, x, y)
             if d < best:
                 segment, at, best = other, guess, d
-    for k in range(len(chains.cubics)):
-        if from_box(chains.boxes[k], x, y) < best - max(slack, CLOSER * best):
-            guess, d = nearest_on(chains, k, x, y, best, slack, places)
-            if d < best:
-                segment, at, best = k, guess, d
+    for g in range(len(chains.groups)):
+        if best <= slack:
+            break
+        if from_box(chains.groups[g], x, y) >= best - max(slack, CLOSER * best):
+            continue
+        for k in range(GROUP * g, min(GROUP * (g + 1), len(chains.cubics))):
+            if from_box(chains.boxes[k], x, y) < best - max(slack, CLOSER * best):
+                guess, d = nearest_on(chains, k, x, y, best, slack, places)
+                if d < best:
+                    segment, at, best = k, guess, d
     at, best = reached(chains.cubics, segment, at, x, y)  # where the guess was poor, Newton's steps were too few
     return segment, at, best
 
