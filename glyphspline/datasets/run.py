@@ -239,7 +239,9 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
         for number, of_font in fonts.items():
             totals[number] = totals.get(number, OfFont()).plus(of_font)
     remove_unfinished(Path(out))
-    sizes = {shard: remote.size(path) or 0 for shard, path in paths.items()}
+    sizes = {shard: size for shard, path in paths.items() if (size := remote.size(path)) is not None}
+    if gone := [path for shard, path in paths.items() if shard not in sizes]:
+        raise OutputError("is gone while the data set is written", font=gone[0])
     summary = Summary.of(plan, totals, sizes)
     remote.put(f"{out}/{FONTS}", lambda file: write_fonts(plan, totals, file))
     remote.put(f"{out}/{CARD}", lambda file: file.write(card(plan, summary, layout).encode()))

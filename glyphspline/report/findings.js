@@ -75,7 +75,7 @@
     numeric: ["score", "contour", "segment", "point"],
     cells: (row) => ({ score: `${row.score}`, level: row.level, finding: row.sentence, location: row.location, font: row.font.name }),
     isChosen: (row) => at("font").value === "" || row.fontNumber === +at("font").value,
-    said: ({ length }) => [length === rows.length ? `${length} findings` : `${length} of ${rows.length} findings`, !length],
+    summary: ({ length }) => [length === rows.length ? `${length} findings` : `${length} of ${rows.length} findings`, !length],
   });
   at("font").addEventListener("change", page.choose);
 })();

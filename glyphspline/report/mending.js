@@ -54,7 +54,7 @@
     heads: ["glyph", "kind", "contour", "segment", "point", "before", "after", "points moved", "curves moved", "why left"],
     numeric: ["contour", "segment", "point", "before", "after", "points moved", "curves moved"],
     cells: (row) => ({ before: row.before, after: result(row), "points moved": row.moved, "curves moved": row.curves, "why left": row.why }),
-    said: (chosen) => {
+    summary: (chosen) => {
       const mended = chosen.filter((row) => !row.why).length;
       return [`${mended} of ${chosen.length} findings mended`, !mended];
     },

@@ -16,9 +16,9 @@
 
   /** Cards of the rows that have a drawing, and a table of all. `draw(card, row)` when it comes into view; its caption has a
    *  `title(row)`, a sentence and lines: `caption(row)`. `heads` of the table, those that are `numeric`, and `cells(row)` by head.
-   *  `isChosen(row)` besides kind and name; `said(chosen)`: words, and whether to say that none is as asked for.
+   *  `isChosen(row)` besides kind and name; `summary(chosen)`: words, and whether to say that none is as asked for.
    *  Returns {choose, redraw}: after a change of what is chosen, and of what cards show. */
-  GS.places = (rows, { size, draw, title, caption, heads, numeric, cells, isChosen = () => true, said }) => {
+  GS.places = (rows, { size, draw, title, caption, heads, numeric, cells, isChosen = () => true, summary }) => {
     const visible = new Set();
     const watcher = new IntersectionObserver((entries) => {
       for (const { target, isIntersecting } of entries) {
@@ -57,7 +57,7 @@
       visible.clear();
       fillCards(chosen.filter((row) => row.drawing >= 0));
       fillRows(chosen);
-      const [words, none] = said(chosen);
+      const [words, none] = summary(chosen);
       at("none").hidden = !none;
       at("count").textContent = words;
     };
