@@ -6,10 +6,11 @@ whole units makes of them, and one of the two segments at the tip lies on the ot
 spur. Other strands are doubled if they are the same but for rounding errors: a bridge to a counter, edges of two
 contours that abut, a copy of a contour. In a glyph of parts that overlap, edges may abut or be shared.
 
-A contour runs in the *wrong direction* if it bounds no ink: both its sides are filled, by the nonzero rule, wherever
-one looks. That is a counter that runs like the contour around it. An outer contour, which has no ink around it, is
-wrong if it runs unlike most outer contours of its glyph. Fonts draw outer contours clockwise or counter-clockwise, and
-both are right.
+What is filled on both sides of a contour, by the nonzero rule, changes only where it meets others or itself: it is
+looked at between all such places. An *outer* contour has white outside along most of what bounds ink. It runs in the
+*wrong direction* if it runs unlike most outer contours of its glyph: fonts draw them clockwise or counter-clockwise,
+and both are right. A contour that has ink on both sides all along is a patch, over a joint of others, and may run as it
+does; but inside a single contour, where a patch is of no use, it is a counter that runs like the contour around it.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 
 from ..compiled import compiled
 from ..curves.bezier import evaluate
-from ..curves.contacts import all_crossings
+from ..curves.contacts import Strand, all_crossings
 from ..curves.crossings import meetings
 from ..curves.cubics import jet, length, split
 from ..curves.integrals import area, integrals
@@ -32,6 +33,16 @@ SHARP = np.radians(30.0)
 STEPS, MOST_HALVINGS = 16, 128
 """Chords a segment on the two sides of a spur. Most halvings of a segment for a ray: those around the ray's beginning
 are points by then."""
+
+ANYWHERE = 0.41
+"""Parameter at which the sides of a contour that meets nothing are looked at: contours may share ends and middles."""
+
+ONE_WAY = 0.8
+"""Share of an outer contour's length by which more of it runs one way than the other: a contour that crosses itself may
+run both ways."""
+
+BESIDE = 1e-3
+"""Distance from a contour, in thousandths of an em, at which its sides are looked at."""
 
 
 def enclosed_findings(
@@ -53,14 +64,12 @@ def enclosed_findings(
     offsets = segments.offsets
     met, _ = meetings(cubics, offsets, glyphs)
     crossed, touching = all_crossings(cubics, offsets, met), met[~np.isnan(met[:, 4])]
-    crosses, lies = np.zeros((2, len(offsets) - 1), dtype=np.bool_)
+    crosses = np.zeros(len(offsets) - 1, dtype=np.bool_)
     crosses[crossed[crossed[:, 0] != crossed[:, 1], :2].astype(np.int64)] = True
     doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)
-    pairs = doubled[:, [1, 5]].astype(np.int64)
-    lies[pairs[pairs[:, 1] >= 0]] = True
     spurs = _spurs(cubics, segments, limits, min(ROUNDING, unit))
     known = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs[spurs[:, 0] == DOUBLED, 1])
-    directions = _wrong_directions(cubics, offsets, glyphs, crosses, lies, unit, outer)
+    directions = _wrong_directions(cubics, offsets, glyphs, met, unit, outer)
     return np.concatenate([_crossed(crossed), doubled[~known], spurs, directions])
 
 
@@ -146,36 +155,71 @@ def _spurs(cubics: FloatArray, segments: Segments, limits: Limits, apart: float)
 
 
 def _wrong_directions(
-    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, crosses: BoolArray, lies: BoolArray, unit: float, way: int
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, met: FloatArray, unit: float, way: int
 ) -> FloatArray:
-    """Contours that bound no ink, and outer ones that run against ``way``, or, if it is 0, against most of the glyph's.
+    """Filled counters, and outer contours that run against ``way``, or, if it is 0, against most of the glyph's.
 
     Args:
-        crosses, lies: (C,) whether a contour crosses another one, and whether it lies on one: its sides are unknown.
+        met: (K, 6) where contours meet, see :func:`..curves.crossings.meetings`.
     """
-    areas, bounds, outer, around = surroundings(cubics, offsets, glyphs, crosses, unit * unit)
-    owners = np.repeat(np.arange(len(glyphs) - 1), np.diff(glyphs))
-    most, total = (np.bincount(owners, values * outer, len(glyphs) - 1) for values in (np.sign(areas), areas))
+    count, owners = len(offsets) - 1, np.repeat(np.arange(len(glyphs) - 1), np.diff(glyphs))
+    places, lengths = _between_meetings(cubics, offsets, met)
+    contours = places[:, 0].astype(np.int64)
+    areas, own, every, around = sides(cubics, offsets, glyphs, owners, places, BESIDE * unit, unit * unit)
+    white = every == 0
+    bounds = white[:, 0] != white[:, 1]
+    outside = (white & (own == 0)).any(axis=1)  # where white is, the contour does not wind
+    lean = np.where(bounds, np.sign(every.sum(axis=1)), 0)
+    of_outer, of_counters = (np.bincount(contours, lengths * (bounds & each), count) for each in (outside, ~outside))
+    outer = of_outer > of_counters
+    leans = np.bincount(contours, lengths * (lean * outside), count)
+    runs = np.sign(leans) * (outer & (np.abs(leans) >= ONE_WAY * of_outer))
+    most, total = (np.bincount(owners, values, len(glyphs) - 1) for values in (runs, areas * outer))
     wanted = np.full(len(most), way) if way else np.where(most != 0, most, total)
-    hidden = (areas != 0) & ~bounds & ~lies
-    which = np.flatnonzero(hidden | (outer & (areas * wanted[owners] < 0)))
-    return rows(DIRECTION, which, 0.0, np.abs(areas[which]), other=np.where(hidden[which], around[which], -1))
+    within = np.full(count, -1)
+    within[contours] = around
+    # The others wind once, as this contour does; and nowhere another one of them.
+    inside = (every - own == own.sum(axis=1)[:, None]).all(axis=1) & (around >= 0) & (around == within[contours])
+    filled = (np.bincount(contours, ~inside, count) == 0) & (areas != 0) & (within >= 0)
+    which = np.flatnonzero(filled | (runs * wanted[owners] < 0))
+    return rows(DIRECTION, which, 0.0, np.abs(areas[which]), other=np.where(filled[which], within[which], -1))
+
+
+def _between_meetings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(k, 2) contours and places on them between any two where they meet something, and (k,) the lengths between these.
+
+    A contour that meets nothing has one place, and a length of 1.
+    """
+    ends = np.concatenate([met[:, [0, 2]], met[:, [1, 3]], met[:, [0, 4]], met[:, [1, 5]]])
+    ends = np.unique(ends[~np.isnan(ends[:, 1])], axis=0)
+    alone = np.setdiff1d(np.flatnonzero(np.diff(offsets)), ends[:, 0])
+    found, lengths = [np.column_stack([alone, np.full(len(alone), ANYWHERE)])], [np.ones(len(alone))]
+    for c in np.unique(ends[:, 0]).astype(np.int64).tolist():
+        strand, own = Strand(cubics[offsets[c] : offsets[c + 1]]), ends[ends[:, 0] == c, 1]
+        at, again = strand.positions(own), own[0] + len(strand.cubics)
+        middles = (own + np.append(own[1:], again)) / 2 % len(strand.cubics)
+        found.append(np.column_stack([np.full(len(own), c), middles]))
+        lengths.append(np.diff(at, append=at[0] + strand.total))
+    return np.concatenate(found), np.concatenate(lengths)
 
 
 @compiled
-def surroundings(
-    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, crosses: BoolArray, least: float
-) -> tuple[FloatArray, BoolArray, BoolArray, IntArray]:
-    """(C,) signed area of contours, 0 up to ``least``; whether they bound ink, and are outer; the next one around.
+def sides(
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, owners: IntArray, places: FloatArray, beside: float,
+    least: float,
+) -> tuple[FloatArray, IntArray, IntArray, IntArray]:  # fmt: skip
+    """How often contours of a glyph wind on both sides of one of them.
 
-    The last is -1 if there is none. ``crosses``: (C,) whether a contour crosses another one.
+    Args:
+        owners: (C,) glyphs of contours. places: (k, 2) contours and places on them. beside: distance of the two sides.
+
+    Returns:
+        (C,) signed area of contours, 0 up to ``least``. (k, 2) how often the contour winds to its left and right, and
+        (k, 2) all of its glyph together. (k,) which other one winds on its left, -1 if none or several do.
     """
     count = len(offsets) - 1
-    areas = np.empty(count)
-    bounds, outer = np.zeros(count, dtype=np.bool_), np.zeros(count, dtype=np.bool_)
-    around = np.full(count, -1)
+    areas, boxes = np.empty(count), np.full((count, 4), np.nan)
     pieces = np.empty((MOST_HALVINGS + 1, 4, 2))
-    boxes = np.full((count, 4), np.nan)
     for c in range(count):
         areas[c] = area(cubics[offsets[c] : offsets[c + 1]])
         if abs(areas[c]) <= least:
@@ -183,31 +227,32 @@ def surroundings(
         for k in range(4 if offsets[c] < offsets[c + 1] else 0):
             own = cubics[offsets[c] : offsets[c + 1], :, k % 2]
             boxes[c, k] = own.min() if k < 2 else own.max()
-    for g in range(len(glyphs) - 1):
-        for c in range(glyphs[g], glyphs[g + 1]):
-            if areas[c] == 0:
+    owns, every = np.zeros((len(places), 2), np.int64), np.zeros((len(places), 2), np.int64)
+    around = np.full(len(places), -1)
+    for i in range(len(places)):
+        c = int(places[i, 0])
+        if areas[c] == 0:
+            continue
+        s = int(places[i, 1])
+        x, y, dx, dy, _, _ = jet(cubics, offsets[c] + s, places[i, 1] - s)
+        step = beside / max(length(dx, dy), 1e-300)
+        others = 0
+        for d in range(glyphs[owners[c]], glyphs[owners[c] + 1]):
+            box = boxes[d]
+            if x < box[0] - beside or y < box[1] - beside or x > box[2] + beside or y > box[3] + beside:
                 continue
-            sign = 1 if areas[c] > 0 else -1
-            for s in range(offsets[c], offsets[c + 1]):
-                # Parameter of the point of a segment whose two sides are examined: contours may share ends and middles.
-                x, y, _, _, _, _ = jet(cubics, s, 0.41)
-                outside, innermost = 0, -1
-                for d in range(glyphs[g], glyphs[g + 1]):
-                    box = boxes[d]
-                    if d == c or x < box[0] or y < box[1] or x > box[2] or y > box[3]:
-                        continue
-                    turns = winding(cubics, offsets[d], offsets[d + 1], x, y, pieces)
-                    outside += turns
-                    if turns * sign > 0 and (innermost < 0 or abs(areas[d]) < abs(areas[innermost])):
-                        innermost = d
-                if outside == 0 or outside + sign == 0:
-                    bounds[c] = True
-                    outer[c] = outer[c] or outside == 0
-                    if outer[c] or not crosses[c]:
-                        break
-                elif around[c] < 0:
-                    around[c] = innermost
-    return areas, bounds, outer, around
+            for side in range(2):
+                away = step if side == 0 else -step
+                turns = winding(cubics, offsets[d], offsets[d + 1], x - away * dy, y + away * dx, pieces)
+                every[i, side] += turns
+                if d == c:
+                    owns[i, side] = turns
+                elif side == 0 and turns != 0:
+                    others += 1
+                    around[i] = d
+        if others != 1:
+            around[i] = -1
+    return areas, owns, every, around
 
 
 @compiled

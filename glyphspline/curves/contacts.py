@@ -47,8 +47,8 @@ def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> Flo
     largest = RADIUS * float(np.abs(cubics).max(initial=0.0))
     for pair in np.unique(met[touches, :2].astype(np.int64), axis=0):
         first, second = pair.tolist()
-        one = _Strand(cubics[offsets[first] : offsets[first + 1]])
-        other = one if first == second else _Strand(cubics[offsets[second] : offsets[second + 1]])
+        one = Strand(cubics[offsets[first] : offsets[first + 1]])
+        other = one if first == second else Strand(cubics[offsets[second] : offsets[second + 1]])
         its = (met[:, :2] == pair).all(axis=1)
         left, crossing = met[its & touches, 2:], met[its & ~touches, 2:4]
         radius = largest / FIRST
@@ -66,7 +66,7 @@ def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> Flo
 
 
 def _crosses(
-    contact: _Contact, one: _Strand, other: _Strand, radius: float, largest: float, known: FloatArray
+    contact: _Contact, one: Strand, other: Strand, radius: float, largest: float, known: FloatArray
 ) -> bool | None:
     """Whether contours change sides in a contact, beside the crossings (k, 2) that are known; None if not decided."""
     (a, b), (a_end, b_end) = contact.begin, contact.end
@@ -98,7 +98,7 @@ def _crosses(
     return bool((inside.sum() + (left != left_at_end)) % 2)
 
 
-class _Strand:
+class Strand:
     """A contour along which one walks."""
 
     def __init__(self, cubics: FloatArray) -> None:
@@ -201,7 +201,7 @@ class _Contact:
     beside: list[float]
 
 
-def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float) -> list[_Contact]:
+def _contacts(touching: FloatArray, one: Strand, other: Strand, radius: float) -> list[_Contact]:
     """Pairs of chords that hang together; see :func:`all_crossings`."""
     if len(touching) == 1:
         ((a, b, a_end, b_end),) = touching.tolist()
@@ -239,7 +239,7 @@ def _contacts(touching: FloatArray, one: _Strand, other: _Strand, radius: float)
 
 
 def _exit(
-    one: _Strand, a: float, other: _Strand, b: float, forward: bool, other_forward: bool, radius: float, tied: float
+    one: Strand, a: float, other: Strand, b: float, forward: bool, other_forward: bool, radius: float, tied: float
 ) -> tuple[float, float, bool | None]:
     """Where strands leave the circle around an end of a contact, places a and b, forward or backward.
 

@@ -20,6 +20,7 @@ from ..checks.turns import joint_controls, turns_of
 from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray
 from .balance import Bounds, Stretch, curvatures_at, jumps_at, turns_at
+from .ink import INK, keeps_ink
 from .joints import EXACT, Layout
 from .shapes import Proposal, with_moves, with_result
 from .single import single_handles
@@ -377,6 +378,8 @@ def _settled(
         if not given_up:
             trial, after = check(trial)
             given_up = _far(first, trial, groups, design) or _found_new(trial, groups, before, after)
+        if not given_up and not keeps_ink(first, trial, design):
+            given_up = [(_spoiling(first, now, groups, design, check), INK)]
         for group, why in given_up:
             group.next(why)
         if not given_up:
@@ -412,6 +415,20 @@ def _found_new(trial: Masters, groups: Sequence[Group], before: State, after: St
         why = f"would bring a new finding: {KINDS[what].name}"
         found += [(group, why) for group in own or groups if group.now]
     return _once(found)
+
+
+def _spoiling(
+    first: Masters, now: Masters, groups: Sequence[Group], design: Design,
+    check: Callable[[Masters], tuple[Masters, State]],
+) -> Group:  # fmt: skip
+    """A group whose move changes the ink by itself, or else the one that moves curves the most."""
+    moving = [(group.now, group) for group in groups if group.now]
+    moving.sort(key=lambda each: -each[0].distance)
+    for proposal, group in moving if len(moving) > 1 else ():
+        trial, _ = check(with_moves(now, [(group.contour, proposal)]))
+        if not keeps_ink(first, trial, design):
+            return group
+    return moving[0][1]
 
 
 def _once(found: Sequence[tuple[Group, str]]) -> list[tuple[Group, str]]:

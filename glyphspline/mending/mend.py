@@ -2,8 +2,8 @@
 
 Each finding has a list of moves, of joints that kink (:mod:`.kinks`) and of others (:mod:`.shapes`). Those that keep
 the curves within the tolerance, everywhere between the masters, are tried: the first of every finding, then the next
-ones of those that are still found or bring a new finding. The kinds follow each other. Last come those for which points
-go, or change their order (:mod:`.fewer`), one finding after the other.
+ones of those that are still found, bring a new finding or change the ink (:mod:`.ink`). The kinds follow each other.
+Last come those for which points go, or change their order (:mod:`.fewer`), one finding after the other.
 """
 
 from __future__ import annotations
@@ -20,13 +20,11 @@ from ..errors import OptionError, is_positive, require
 from ..outlines.masters import MasterContour, Masters
 from ..outlines.outline import Outline
 from .fewer import EDITED, Edited
+from .ink import INK, keeps_ink
 from .joints import starts_of
 from .kinks import BEYOND, SMOOTHED, Group, proposals, settled
 from .shapes import Proposal, moved, shape_moves
-from .state import Change, Design, Into, Key, State, distances
-
-PER_EM = 1e-3
-"""The tolerance as a share of the em, unless another is given."""
+from .state import PER_EM, Change, Design, Into, Key, State, distances
 
 TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
@@ -46,8 +44,9 @@ def mend(
     """Move handles, then nodes, as little as it takes so that joints meant to be smooth no longer kink.
 
     Points stay in their order, and on the grid of the source: whole units, or its decimals. Horizontal and vertical
-    handles stay so. Joints that need more than the tolerance, or would bring a new finding of any kind, are left. In
-    masters, no joint that is mended turns by the threshold or more along any axis.
+    handles stay so. Joints that need more than the tolerance, or would bring a new finding of any kind, are left; and
+    so is what would change the ink: by an area of more than the tolerance times the length of the outline, or by an
+    island or a counter. In masters, no joint that is mended turns by the threshold or more along any axis.
 
     Args:
         glyph: an outline, or a glyph in all its masters. kinds: names of the kinds to mend: of ``MENDED``.
@@ -175,12 +174,16 @@ class _Glyph:
                 why, needs = "is beyond the tolerance", bound
         for bound, one in sorted(near, key=lambda each: each[0]):
             others = [*contours[:c], one, *contours[c + 1 :]]
-            after = State.of(_edited(now, others), self.thresholds, self.outer)
+            trial = _edited(now, others)
+            after = State.of(trial, self.thresholds, self.outer)
             new = _renumbered(after.found, others, True) - _renumbered(before.found, others, False)
-            if not new and after.found.total() < most:
+            names, needs = [KINDS[what].name for what, *_ in new], None
+            if names or after.found.total() >= most:
+                why = f"would bring a new finding: {names[0]}" if names else "is still found"
+            elif not keeps_ink(self.masters, trial, self.design):
+                why = INK
+            else:
                 return one, replace(change, distance=bound, gone=contours[c].num_points - one.num_points)
-            names = [KINDS[what].name for what, *_ in new]
-            why, needs = f"would bring a new finding: {names[0]}" if names else "is still found", None
         return None, replace(change, why=why or "is mended by no move", needs=needs)
 
 

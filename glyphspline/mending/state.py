@@ -21,6 +21,9 @@ from ..outlines.masters import MasterContour, Masters
 from ..types import FloatArray, IntArray
 from .joints import SMOOTH, Layout, starts_of
 
+PER_EM = 1e-3
+"""The tolerance as a share of the em, unless another is given."""
+
 STEPS = 8
 """Steps of each axis, at whose ends findings other than kinks are looked for besides the masters."""
 

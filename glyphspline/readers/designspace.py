@@ -28,7 +28,7 @@ from ..outlines.outline import Outline
 from ..types import Head
 from .pens import MAX_COMPONENTS, ContourPen, enter_component
 from .source import Location, Source, parsed
-from .ufo import Drawing, Ufo
+from .ufo import Drawing, Ufo, components_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,6 +170,10 @@ class Designspace(Source):
         """The number in :meth:`masters` of each contour that a glyph draws itself; None: left out there."""
         own: list[int | None] = self.drawings(name)[0].glyphs[name].numbered(self._mixed(name, [])[1])
         return own
+
+    def components(self) -> dict[str, set[str]]:
+        """The names of the components that each composite has itself, in any master."""
+        return components_of([each.glyphs for each in self._masters_of_all])
 
     def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
         return tuple(support.get(axis.tag, (0.0, 0.0, 0.0)) for axis in self.axes)

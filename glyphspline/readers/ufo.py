@@ -101,6 +101,10 @@ class Ufo(Source):
         pen, glyph = self._drawn(name)
         return glyph.numbered(pen.own)
 
+    def components(self) -> dict[str, set[str]]:
+        """The names of the components that each composite has itself."""
+        return components_of([self.default_layer])
+
     def layer(self, name: str) -> GlyphSet:
         """The glyphs of another layer.
 
@@ -148,6 +152,20 @@ class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
         calls, drawn = [name for name, *_ in self.value], iter(own)
         ends = [k for k, name in enumerate(calls) if name == "endPath"]
         return [None if calls[k - 1] == "beginPath" else next(drawn) for k in ends]
+
+
+def components_of(masters: Iterable[GlyphSet]) -> dict[str, set[str]]:
+    """The names of the components that composites have in any of these masters; a broken glyph has none."""
+    found: dict[str, set[str]] = {}
+    for glyphs in masters:
+        for name in glyphs.contents:
+            try:
+                parts = {item.get("base") for item in parsed(glyphs.getGLIF(name)).iter("component")}
+            except Exception:  # as in opening
+                continue
+            if parts:
+                found.setdefault(name, set()).update(parts)
+    return found
 
 
 def _files(folder: Path) -> Iterator[Path]:

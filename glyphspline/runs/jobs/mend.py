@@ -13,7 +13,7 @@ from ...errors import OutputError
 from ...files import writing
 from ...mending.fewer import EDITED
 from ...mending.mend import check_kinds, mended
-from ...mending.state import DIGITS, Change, Into, State
+from ...mending.state import Change, Into, State
 from ...outlines.masters import Masters
 from ...readers import Font
 from ...readers.designspace import Designspace
@@ -22,6 +22,7 @@ from ...types import Head
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, heads_of, place_of, sources, workers
 from ..spec import LIMITS
+from .mended_users import New, spoiling, write
 
 OF_COMPONENT = "is of a component"
 """Why contours are left that another glyph draws; there they are mended."""
@@ -167,7 +168,7 @@ def mend_source(
 
         editable(source)
     job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
-    found, new = MendedSource(str(source.path)), []
+    found, new = MendedSource(str(source.path)), list[New]()
     with workers(0, executor=executor) as pool:
         for part in run(job, list(heads_of(source, names).values()), pool, ordered=True, observer=observer):
             for (name, _, _), one in zip(part.tasks, part.result, strict=True):
@@ -177,23 +178,21 @@ def mend_source(
                 found.changes += one.changes
                 if one.old is not None and one.new is not None:
                     redrawn = {each.contour for each in one.changes if each.is_mended and each.kind in EDITED}
-                    new.append((one.old, one.new, redrawn))
-    found.drawn = {now.name: (old, now) for old, now, _ in new}
+                    new.append(New(one.old, one.new, redrawn))
+        with writing(copy or source.path):
+            stay = spoiling(source, new, tolerance, thresholds, pool)
+    new = [each for each in new if each.now.name not in stay]
     with writing(copy or source.path):
-        if isinstance(source, Font):
-            from ...writers.back.fonts import write_points
-
-            found.changed = write_points(source, [(old, now) for old, now, _ in new], copy=copy, dry=dry)
-            return found
-        from ...writers.back.back import moved_points, write_back
-
-        moved = [moved_points(source, *each) for each in new]
-        written = write_back(source, moved, DIGITS, copy=copy, layer=layer, dry=dry)
-    found.changed = written.names
+        written = write(source, new, copy, layer, dry)
+    found.drawn, found.changed = {now.name: (old, now) for old, now, _ in new}, written.names
     kept = written.contours
     found.changes = [
-        replace(c, why=kept[c.glyph, c.contour], after=None, moved=0.0, moves=(), distance=None)
-        if c.is_mended and (c.glyph, c.contour) in kept else c
+        _left(c, why) if (why := stay.get(c.glyph) or kept.get((c.glyph, c.contour))) and c.is_mended else c
         for c in found.changes
-    ]  # fmt: skip
+    ]
     return found
+
+
+def _left(change: Change, why: str) -> Change:
+    """A finding that was mended and stays all the same."""
+    return replace(change, why=why, after=None, moved=0.0, moves=(), gone=0, distance=None)

@@ -72,6 +72,17 @@ class FontEdit:
             found.why = dict.fromkeys(range(len(glyph.contours)), why)
         return found
 
+    def components(self) -> dict[str, set[str]]:
+        """The names of the components that each composite has itself."""
+        if "glyf" not in self.font:
+            return {}
+        glyf, names = self.font["glyf"], {stored: name for name, stored in self._names.items()}
+        return {
+            names[name]: {names[part] for part in glyf[name].getComponentNames(glyf) if part in names}
+            for name in self.font.getGlyphOrder()
+            if glyf.glyphs[name].isComposite()
+        }
+
     def put(self, old: Masters, new: Masters) -> None:
         """Put a glyph in, with other points than it was read with."""
         self.stored(old).put(new)
