@@ -11,16 +11,19 @@ from typing import Any
 import numpy as np
 import pytest
 from fontTools.pens.pointPen import SegmentToPointPen
+from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ufoLib import UFOWriter
 
+import glyphspline as gs
 from glyphspline.checks.kinds import MENDED
 from glyphspline.outlines.outline import Contour
 from glyphspline.readers import open_source
 from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.jobs.mend import MendedSource, mend_source
+from scripts.drawn_fonts import begun, ended
 from scripts.mended_ink import Ink, alike, drawings
 
-TOLERANCE, PIXEL = 4.0, 0.25
+TOLERANCE, PIXEL = 4.0, 1 / 3
 
 Points = Sequence[tuple[float, float]]
 Component = tuple[str, tuple[float, ...]]
@@ -46,7 +49,7 @@ def disc(x: float, y: float, radius: float, turn: int = 1) -> Contour:
 ARCHES = {
     "kink": [(0, 0), (0, 166), (134, 300), (300, 300), (466, 306), (600, 166), (600, 0)],
     "unlevel": [(0, 0), (0, 166), (134, 298), (300, 300), (466, 302), (600, 166), (600, 0)],
-    "jump": [(0, 0), (0, 166), (134, 300), (300, 300), (445, 300), (600, 166), (600, 0)],
+    "jump": [(0, 0), (0, 166), (134, 300), (300, 300), (430, 300), (600, 166), (600, 0)],
     "handles": [(0, 0), (0, 17), (13, 30), (30, 30), (64, 30), (60, 17), (60, 0)],
     "extremum": [
         (0, 0), (0, 160), (90, 290), (200, 297), (270, 302), (350, 302), (420, 296), (520, 287), (600, 160), (600, 0)
@@ -60,6 +63,7 @@ def arch(kind: str) -> Contour:
     return Contour(np.array(ARCHES[kind], dtype=np.float64), np.array(degrees)).reversed()
 
 
+BOX = [(0, 0), (600, 0), (600, 100)]
 STEM, BAR = box(280, 0, 40, 400), box(0, 180, 600, 40)
 RING = [disc(300, 300, 300), disc(300, 300, 200, -1)]
 SLANTED = polygon((0, 0), (600, 0), (600, 101), (0, 100))
@@ -101,23 +105,29 @@ PLANTED = {
     **{kind: [arch(kind)] for kind in ARCHES},
     "extremum_below_bar": [arch("extremum"), box(0, 302, 600, 60)],
     "unlevel_below_bar": [arch("unlevel"), box(0, 301, 600, 60)],
+    "straight": [Contour(np.array([*BOX, (400, 100), (200, 100), (0, 100)]), np.array([1, 1, 3, 1]))],
     "repeated": [polygon((0, 0), (100, 0), (100, 0), (100, 100), (50, 60), (0, 100))],
     "kink_in_overlap": [arch("kink"), box(100, 250, 400, 300)],
     "straight_on_seam": [
-        Contour(np.array([(0, 0), (600, 0), (600, 100), (400, 100.4), (200, 100.4), (0, 100)]), np.array([1, 1, 3, 1])),
+        Contour(np.array([*BOX, (400, 100.4), (200, 100.4), (0, 100)]), np.array([1, 1, 3, 1])),
         box(0, 100, 600, 50),
     ],
 }  # fmt: skip
 """Drawings by their names, of which most have findings that are not to be mended."""
 
 COMPOSITES: dict[str, list[Component]] = {
-    **{f"{name}_mirrored": [(name, (-0.5, 0, 0, 0.5, 700, 0)), (name, (0, 1, -1, 0, 0, 0))] for name in PLANTED},
+    **{
+        f"{name}_mirrored": [(name, (-0.75, 0, 0, 0.75, 0, 0)), (name, (-0.75, 0, 0, 0.75, 37, 23))] for name in PLANTED
+    },
     "touched_at_an_end": [("slanted", (1, 0, 0, 1, 0, 0)), ("bar", (1, 0, 0, 1, 0, 101))],
     "over_half": [("slanted", (1, 0, 0, 1, 0, 0)), ("bar", (1, 0, 0, 1, 0, 100.5))],
     "over_half_again": [("over_half", (1, 0, 0, 1, 10, 0))],
     "slit_on_bar": [("slit", (1, 0, 0, 1, 0, 0)), ("bar", (1, 0, 0, 1, 0, -60))],
 }
-"""Composites: of each drawing twice, and of those whose edge meets a bar only at one end, or crosses it."""
+"""Composites: of each drawing twice, and of those whose edge meets a bar at one end only, or crosses it."""
+
+ON_BARS = ("touched_at_an_end", "over_half", "over_half_again")
+"""Composites that would fall apart if the edge were level."""
 
 
 def written(path: Path) -> Path:
@@ -155,21 +165,60 @@ def planted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return written(tmp_path_factory.mktemp("planted") / "planted.ufo")
 
 
-def mended(path: Path, kinds: Sequence[str], copy: Path) -> MendedSource:
-    source = open_source(path)
+@cache
+def mended(path: Path, kinds: tuple[str, ...]) -> tuple[MendedSource, Any]:
+    """What became of the source, and what is drawn then."""
+    source, copy = open_source(path), path.with_name(f"{'-'.join(kinds)}.ufo")
     assert isinstance(source, Ufo)
     found = mend_source(source, source.glyph_names, kinds=kinds, tolerance=TOLERANCE, copy=copy)
     assert not found.failed
-    return found
+    return found, drawings(copy)
 
 
-@pytest.mark.parametrize("kinds", [*([kind] for kind in MENDED), MENDED], ids="-".join)
-def test_no_mending_changes_what_is_filled(kinds: Sequence[str], planted: Path, tmp_path: Path) -> None:
-    found = mended(planted, kinds, tmp_path / "mended.ufo")
-    old, new = before(planted), drawings(tmp_path / "mended.ufo")
+@pytest.mark.parametrize("kinds", [*((kind,) for kind in MENDED), MENDED], ids="-".join)
+def test_no_mending_changes_what_is_filled(kinds: tuple[str, ...], planted: Path) -> None:
+    found, new = mended(planted, kinds)
+    old = before(planted)
     changed = [name for name in old if not alike(old[name], new[name])]
     assert {*found.changed} <= {*changed}
     assert found.mended
     for name in changed:
         ink = Ink(old[name], new[name], PIXEL, TOLERANCE)
         assert not ink.differs, (name, ink.area, ink.islands, ink.counters)
+
+
+def test_moves_that_would_change_ink_are_left_and_say_so(planted: Path) -> None:
+    found, _ = mended(planted, MENDED)
+    left = {(each.glyph, each.kind): each.why for each in found.left}
+    for name in ("nested", "ring_filled", "overlap_turned", "half_overlap"):
+        assert left[name, "direction"] == "would change the ink"
+    assert left["tiny_counter", "short"] == "would change the ink"
+    assert left["slanted", "slanted"] in {f"would change the ink of {name}, a composite" for name in ON_BARS}
+    assert "slanted" not in found.changed
+    assert {"dot_turned", "island_turned"} <= {*found.changed}
+    assert all(each.moved == each.gone == 0 and not each.moves for each in found.left)
+
+
+def test_in_a_font_composites_keep_their_ink_too(planted: Path, tmp_path: Path) -> None:
+    source = open_source(planted)
+    builder = begun([".notdef", *source.glyph_names], {}, cubic=False, em=1000)
+    drawn: dict[str, Any] = {".notdef": TTGlyphPen(None).glyph()}
+    for name in source.glyph_names:
+        pen = TTGlyphPen(dict.fromkeys(source.glyph_names))
+        for base, matrix in COMPOSITES.get(name, ()):
+            pen.addComponent(base, matrix)
+        for contour in () if name in COMPOSITES else source.outline(name).contours:
+            if (contour.degrees == 1).all():
+                contour.draw(pen)
+        drawn[name] = pen.glyph()
+    builder.setupGlyf(drawn)
+    bearings = {name: (600, getattr(builder.font["glyf"][name], "xMin", 0)) for name in drawn}
+    ended(builder, bearings, "Planted").save(tmp_path / "planted.ttf")
+    font = gs.open_font(tmp_path / "planted.ttf")
+    found = mend_source(font, font.glyph_names, kinds=MENDED, tolerance=TOLERANCE, copy=tmp_path / "mended.ttf")
+    old, new = drawings(tmp_path / "planted.ttf"), drawings(tmp_path / "mended.ttf")
+    changed = [name for name in old if not alike(old[name], new[name])]
+    assert {"slit", "slit_mirrored"} <= {*changed}
+    assert not [name for name in changed if Ink(old[name], new[name], PIXEL, TOLERANCE).differs]
+    (why,) = [each.why for each in found.left if (each.glyph, each.kind) == ("slanted", "slanted")]
+    assert why in {f"would change the ink of {name}, a composite" for name in ON_BARS}
