@@ -27,7 +27,7 @@ CHARACTERS = "+=/-|_#AHBO8i%&é─│┌■○⊕∞"
 """Lines alone, rings in each other, marks apart, components."""
 
 
-class Polygons(BasePen):
+class Polygons(BasePen):  # type: ignore[misc, unused-ignore]
     """A glyph's contours as polygons (n, 2), eight chords a curve, with their areas by AreaPen."""
 
     def __init__(self, glyphs: Any) -> None:
@@ -123,11 +123,9 @@ def drawn(turned: bool) -> str:
         corners = [(x, y), (x + size, y), (x + size, y + size), (x, y + size)]
         paths.append("M" + "L".join(f"{a} {b}" for a, b in corners[:: -1 if inner != turned else 1]) + "Z")
     for size, inner in ((150, False), (90, True)):
-        to = f"q{size} 0 {size} {size}", f"q0 {size} -{size} {size}", f"q-{size} 0 -{size} -{size}"
-        to += (f"q0 -{size} {size} -{size}",)
-        back = f"q-{size} 0 -{size} {size}", f"q0 {size} {size} {size}", f"q{size} 0 {size} -{size}"
-        back += (f"q0 -{size} -{size} -{size}",)
-        paths.append(f"M700 {400 - size}" + "".join(back if inner != turned else to) + "Z")
+        corners = [(size, 0, size, size), (0, size, -size, size), (-size, 0, -size, -size), (0, -size, size, -size)]
+        to = corners if inner == turned else [(-x, y, -a, b) for x, y, a, b in corners]
+        paths.append(f"M700 {400 - size}" + "".join(f"q{x} {y} {a} {b}" for x, y, a, b in to) + "Z")
     return "".join(paths)
 
 

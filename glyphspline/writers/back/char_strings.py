@@ -39,7 +39,7 @@ class CharStringContours(Stored):
 
     def __init__(self, font: TTFont, name: str, glyph: Masters) -> None:
         self._name, self._glyph, self._is_cff2 = name, glyph, "CFF2" in font
-        self._strings = font["CFF2" if self._is_cff2 else "CFF "].cff.topDictIndex[0].CharStrings
+        self._strings = char_strings(font)
         self._program = program = Program(self._strings[name])
         regions = CharStrings2(font).regions[program.vsIndex] if program.numRegions else []
         order = order_of(regions, glyph) if regions else []
@@ -69,7 +69,7 @@ class CharStringContours(Stored):
         return replace(new, contours=contours)
 
     def put(self, new: Masters) -> None:
-        """See :meth:`.Stored.put`.
+        """See :meth:`.Stored.put`. The new char string is not compiled, so that :func:`.programs.share` can read it.
 
         Raises:
             GlyphsplineError: a point moves in a master whose region the char string has not.
@@ -81,7 +81,6 @@ class CharStringContours(Stored):
         old = self._strings[self._name]
         program = self._program.with_others(dict(self._written(changed)))
         made = T2CharString(program=program, private=old.private, globalSubrs=old.globalSubrs)
-        made.compile(isCFF2=self._is_cff2)
         put_string(self._strings, self._name, made)
 
     def _steps(self, new: Masters) -> Iterator[tuple[int, FloatArray]]:
@@ -109,6 +108,11 @@ class CharStringContours(Stored):
             own = [command for command, (start, end) in pairs if first <= start and end <= behind]
             commands = specializeCommands(own, generalizeFirst=False, preserveTopology=True, maxstack=stack)
             yield first, (behind, commandsToProgram(commands))
+
+
+def char_strings(font: TTFont) -> Any:
+    """The char strings of a font, by the names of its glyphs."""
+    return font["CFF2" if "CFF2" in font else "CFF "].cff.topDictIndex[0].CharStrings
 
 
 Read = tuple[list[tuple[int, int]], FloatArray, list[int]]
