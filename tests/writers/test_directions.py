@@ -123,8 +123,8 @@ def drawn(turned: bool) -> str:
         corners = [(x, y), (x + size, y), (x + size, y + size), (x, y + size)]
         paths.append("M" + "L".join(f"{a} {b}" for a, b in corners[:: -1 if inner != turned else 1]) + "Z")
     for size, inner in ((150, False), (90, True)):
-        corners = [(size, 0, size, size), (0, size, -size, size), (-size, 0, -size, -size), (0, -size, size, -size)]
-        to = corners if inner == turned else [(-x, y, -a, b) for x, y, a, b in corners]
+        steps = [(size, 0, size, size), (0, size, -size, size), (-size, 0, -size, -size), (0, -size, size, -size)]
+        to = steps if inner == turned else [(-x, y, -a, b) for x, y, a, b in steps]
         paths.append(f"M700 {400 - size}" + "".join(f"q{x} {y} {a} {b}" for x, y, a, b in to) + "Z")
     return "".join(paths)
 
