@@ -131,7 +131,9 @@ def test_edited_glyphs_call_the_subroutines_of_what_stays_and_share_what_changed
     path, new = decimals(tmp_path / "a.otf", 0), tmp_path / "new.otf"
     font = gs.open_font(path)
     write_points(
-        font, [(font.masters(name), moved(font.masters(name), 1, 4, [(1.0, 0.0)])) for name in "DEF"], copy=new
+        font,
+        [(font.masters(name), moved(font.masters(name), 1, 4, np.array([[1.0, 0.0]]))) for name in "DEF"],
+        copy=new,
     )
     old, now = (cff_of(each).Private.Subrs for each in (path, new))
     assert len(now) == len(old) + 1
