@@ -42,7 +42,7 @@ class CharStringContours(Stored):
         self._strings = char_strings(font)
         self._program = program = Program(self._strings[name])
         regions = CharStrings2(font).regions[program.vsIndex] if program.numRegions else []
-        order = order_of(regions, glyph) if regions else []
+        order, self._read = order_of(regions, glyph) if regions else [], list[Read]()
         try:
             self._commands, self._spans = program.commands(len(regions))
         except ValueError:
@@ -59,12 +59,12 @@ class CharStringContours(Stored):
 
     def masters(self, new: Masters) -> Masters:
         """See :meth:`.Stored.masters`: coordinates and deltas are multiples of 1/65536."""
-        contours, scalars = list(new.contours), self._glyph.at_peaks[:, self._order]
+        contours = list(new.contours)
         for c, steps in self._steps(new):
             index = self.owns[c]
             assert index is not None
             old = self._glyph.contours[index]
-            moves = np.einsum("kj,njc->knc", scalars, steps[: old.points.shape[1]])
+            moves = np.einsum("kj,njc->knc", self._glyph.at_peaks[:, self._order], steps[: old.points.shape[1]])
             contours[index] = MasterContour(old.points + moves, old.degrees)
         return replace(new, contours=contours)
 

@@ -11,21 +11,9 @@ from fontTools.cffLib.specializer import generalizeCommands, programToCommands
 from fontTools.misc.psCharStrings import SimpleT2Decompiler, T2CharString, calcSubrBias
 
 DRAWN = (
-    "rlineto",
-    "hlineto",
-    "vlineto",
-    "rrcurveto",
-    "hhcurveto",
-    "vvcurveto",
-    "hvcurveto",
-    "vhcurveto",
-    "rcurveline",
-    "rlinecurve",
-    "flex",
-    "hflex",
-    "hflex1",
-    "flex1",
-)
+    "rlineto", "hlineto", "vlineto", "rrcurveto", "hhcurveto", "vvcurveto", "hvcurveto", "vhcurveto", "rcurveline",
+    "rlinecurve", "flex", "hflex", "hflex1", "flex1",
+)  # fmt: skip
 """Operators of lines and curves."""
 
 DEEPEST = 10
