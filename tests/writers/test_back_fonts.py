@@ -21,7 +21,7 @@ from glyphspline.cli.commands import app
 from glyphspline.mending.mend import mended
 from glyphspline.mending.state import State
 from glyphspline.runs.jobs.mend import into_of
-from glyphspline.writers.back.char_strings import unflexed
+from glyphspline.writers.back.programs import unflexed
 from tests.places import FONTS
 from tests.variable_drawings import changed_tables
 from tests.variable_fonts import quadratic, variable_font

@@ -1,24 +1,28 @@
-"""The contours of a glyph in ``CFF`` and ``CFF2``: the numbers of its char string change, and hints stay."""
+"""The contours of a glyph in ``CFF`` and ``CFF2``: the numbers of its char string change, and hints stay.
+
+Points are rounded, and steps from point to point are their differences: rounded alone, these would add up to a contour
+that ends beside where it begins.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from fontTools.cffLib import maxStackLimit
-from fontTools.cffLib.specializer import commandsToProgram, generalizeCommands, programToCommands, specializeCommands
-from fontTools.cffLib.transforms import desubroutinizeCharString
+from fontTools.cffLib.specializer import commandsToProgram, specializeCommands
 from fontTools.misc.psCharStrings import T2CharString
 from fontTools.ttLib import TTFont
 
 from ...errors import GlyphsplineError
-from ...outlines.masters import Masters
-from ...readers.opentype.variations import executed
+from ...outlines.masters import MasterContour, Masters
 from ...types import FloatArray, IntArray
-from ..font.font_glyphs import put_string
+from ..font.font_glyphs import FINE, on_grid, put_string
 from ..font.master_deltas import order_of
 from ..font.variable_font import CharStrings2, blend
+from .programs import Command, Program
 from .stored import NEAR, OTHERWISE, REGIONS, Stored, matched
 
 STACK = 48
@@ -26,7 +30,8 @@ STACK = 48
 
 
 class CharStringContours(Stored):
-    """The contours of a char string, of which its subroutines become part.
+    """The contours of a char string. Operators that draw what changes are written anew, with the subroutines that have
+    them; all others stay.
 
     Args:
         name: the glyph's in the font. glyph: as it was read.
@@ -34,12 +39,17 @@ class CharStringContours(Stored):
 
     def __init__(self, font: TTFont, name: str, glyph: Masters) -> None:
         self._name, self._glyph, self._is_cff2 = name, glyph, "CFF2" in font
-        self._strings = font["CFF2" if self._is_cff2 else "CFF "].cff.topDictIndex[0].CharStrings
-        self._commands, regions = commands_of(font, self._strings[name])
-        order = order_of(regions, glyph) if regions else []
-        if self._commands is None or order is None:
-            why = OTHERWISE if self._commands is None else REGIONS
-            super().__init__(why=dict.fromkeys(range(len(glyph.contours)), why))
+        self._strings = char_strings(font)
+        self._program = program = Program(self._strings[name])
+        regions = CharStrings2(font).regions[program.vsIndex] if program.numRegions else []
+        order, self._read = order_of(regions, glyph) if regions else [], list[Read]()
+        try:
+            self._commands, self._spans = program.commands(len(regions))
+        except ValueError:
+            super().__init__(why=dict.fromkeys(range(len(glyph.contours)), OTHERWISE))
+            return
+        if order is None:
+            super().__init__(why=dict.fromkeys(range(len(glyph.contours)), REGIONS))
             return
         self._order = [0, *order]
         self._read = drawn_by(self._commands, len(regions))
@@ -47,72 +57,62 @@ class CharStringContours(Stored):
         stored = [closed(np.einsum("kj,njc->knc", scalars, points), degrees) for _, points, degrees in self._read]
         super().__init__(*matched(glyph, stored))
 
+    def masters(self, new: Masters) -> Masters:
+        """See :meth:`.Stored.masters`: coordinates and deltas are multiples of 1/65536."""
+        contours = list(new.contours)
+        for c, steps in self._steps(new):
+            index = self.owns[c]
+            assert index is not None
+            old = self._glyph.contours[index]
+            moves = np.einsum("kj,njc->knc", self._glyph.at_peaks[:, self._order], steps[: old.points.shape[1]])
+            contours[index] = MasterContour(old.points + moves, old.degrees)
+        return replace(new, contours=contours)
+
     def put(self, new: Masters) -> None:
-        """See :meth:`.Stored.put`.
+        """See :meth:`.Stored.put`. The new char string is not compiled, so that :func:`.programs.share` can read it.
 
         Raises:
             GlyphsplineError: a point moves in a master whose region the char string has not.
         """
-        assert self._commands is not None
+        points = [points for _, points, _ in self._read]
+        for c, steps in self._steps(new):
+            points[c] = points[c] + steps
+        changed = with_points(self._commands, [(*each, now) for each, now in zip(self._read, points, strict=True)])
+        old = self._strings[self._name]
+        program = self._program.with_others(dict(self._written(changed)))
+        made = T2CharString(program=program, private=old.private, globalSubrs=old.globalSubrs)
+        put_string(self._strings, self._name, made)
+
+    def _steps(self, new: Masters) -> Iterator[tuple[int, FloatArray]]:
+        """Of stored contours that are others in ``new`` the number, and (n, 1 + R, 2) by how much points move."""
         varies = np.linalg.inv(self._glyph.at_peaks)
-        whole = [(places, points.copy()) for places, points, _ in self._read]
-        for (_, points), index in zip(whole, self.owns, strict=True):
-            if index is None:
+        for c, ((_, points, _), index) in enumerate(zip(self._read, self.owns, strict=True)):
+            if index is None or new.contours[index] is self._glyph.contours[index]:
                 continue
             moves = new.contours[index].points - self._glyph.contours[index].points
             change = np.einsum("kj,jnc->nkc", varies, moves)
             if np.abs(np.delete(change, self._order, axis=1)).max(initial=0.0) > NEAR:
                 raise GlyphsplineError(REGIONS, glyph=self._glyph.name)
-            count = moves.shape[1]
-            points[:count] += change[:, self._order]
-            points[count:] += change[:1, self._order]  # a contour that ends where it begins
-        with_points(self._commands, whole)
-        old = self._strings[self._name]
+            # A contour that ends where it begins has that point twice.
+            again = np.arange(len(points)) % moves.shape[1]
+            yield c, on_grid(points + change[again][:, self._order], FINE) - points
+
+    def _written(self, changed: Sequence[int]) -> Iterator[tuple[int, tuple[int, list[Any]]]]:
+        """The operators of commands that changed, as tokens: of each run of them the tokens in whose place they are."""
+        operators = sorted({self._spans[number] for number in changed})
+        firsts = [k for k, (first, _) in enumerate(operators) if k == 0 or operators[k - 1][1] != first]
         stack = maxStackLimit if self._is_cff2 else STACK
-        commands = specializeCommands(self._commands, generalizeFirst=False, preserveTopology=True, maxstack=stack)
-        made = T2CharString(program=commandsToProgram(commands), private=old.private, globalSubrs=old.globalSubrs)
-        made.compile(isCFF2=self._is_cff2)
-        put_string(self._strings, self._name, made)
+        for a, b in zip(firsts, [*firsts[1:], len(operators)], strict=True):
+            first, behind = operators[a][0], operators[b - 1][1]
+            pairs = zip(self._commands, self._spans, strict=True)
+            own = [command for command, (start, end) in pairs if first <= start and end <= behind]
+            commands = specializeCommands(own, generalizeFirst=False, preserveTopology=True, maxstack=stack)
+            yield first, (behind, commandsToProgram(commands))
 
 
-def commands_of(font: TTFont, old: Any) -> tuple[list[Any] | None, list[FloatArray]]:
-    """A char string as single moves, lines and curves, and its regions; None if a number of its operators is wrong."""
-    private = old.private
-    copy = T2CharString(bytecode=old.bytecode, program=old.program, private=private, globalSubrs=old.globalSubrs)
-    desubroutinizeCharString(copy)
-    reader = executed(copy)
-    regions = CharStrings2(font).regions[reader.vsIndex] if getattr(reader, "numRegions", None) else []
-    start = getattr(private, "vsindex", 0) or 0
-    commands = programToCommands(copy.program, lambda _: len(regions), vsIndex=start)
-    try:
-        return [each for command in generalizeCommands(commands) for each in unflexed(*command)], regions
-    except ValueError:
-        return None, regions
-
-
-def unflexed(name: str, args: list[Any]) -> list[tuple[str, list[Any]]]:
-    """Two curves in the place of a flex; any other command as it is.
-
-    Raises:
-        ValueError: the flex varies.
-    """
-    if "flex" not in name:
-        return [(name, args)]
-    if any(isinstance(arg, list) for arg in args):
-        raise ValueError(name)
-    if name == "flex":
-        first, second = args[:6], args[6:12]
-    elif name == "hflex":
-        a, b, c, d, e, f, g = args
-        first, second = [a, 0, b, c, d, 0], [e, 0, f, -c, g, 0]
-    elif name == "hflex1":
-        a, b, c, d, e, f, g, h, i = args
-        first, second = [a, b, c, d, e, 0], [f, 0, g, h, i, -(b + d + h)]
-    else:
-        x, y = sum(args[0:10:2]), sum(args[1:10:2])
-        last = [args[10], -y] if abs(x) > abs(y) else [-x, args[10]]
-        first, second = args[:6], [*args[6:10], *last]
-    return [("rrcurveto", first), ("rrcurveto", second)]
+def char_strings(font: TTFont) -> Any:
+    """The char strings of a font, by the names of its glyphs."""
+    return font["CFF2" if "CFF2" in font else "CFF "].cff.topDictIndex[0].CharStrings
 
 
 Read = tuple[list[tuple[int, int]], FloatArray, list[int]]
@@ -120,7 +120,7 @@ Read = tuple[list[tuple[int, int]], FloatArray, list[int]]
 and deltas; and the degrees of the segments."""
 
 
-def drawn_by(commands: Sequence[tuple[str, list[Any]]], regions: int) -> list[Read]:
+def drawn_by(commands: Sequence[Command], regions: int) -> list[Read]:
     """The contours that single moves, lines and curves draw."""
     contours: list[Any] = []
     at = np.zeros((1 + regions, 2))
@@ -146,11 +146,19 @@ def closed(points: FloatArray, degrees: Sequence[int]) -> tuple[FloatArray, IntA
     return points, np.array([*degrees, 1])
 
 
-def with_points(commands: list[tuple[str, list[Any]]], contours: Sequence[tuple[Any, FloatArray]]) -> None:
-    """Put other points into the commands that :func:`drawn_by` read."""
-    at = None
-    for places, points in contours:
-        for (number, k), point in zip(places, points, strict=True):
-            step = point - (np.zeros_like(point) if at is None else at)
-            commands[number][1][k : k + 2] = [blend(step[:, axis].tolist()) for axis in (0, 1)]
-            at = point
+def with_points(commands: list[Command], contours: Sequence[tuple[Any, FloatArray, Any, FloatArray]]) -> list[int]:
+    """Put other points into the commands that :func:`drawn_by` read; the numbers of those that change.
+
+    Args:
+        contours: what it read, each with the new points behind.
+    """
+    changed, none = list[int](), np.zeros_like(contours[0][1][:1]) if contours else np.empty(0)
+    ends = none, none
+    for places, old, _, new in contours:
+        steps = [np.diff(points, axis=0, prepend=end) for points, end in zip((old, new), ends, strict=True)]
+        ends = old[-1:], new[-1:]
+        for k in np.flatnonzero((steps[0] != steps[1]).any(axis=(1, 2))).tolist():
+            number, at = places[k]
+            commands[number][1][at : at + 2] = [blend(steps[1][k, :, axis].tolist()) for axis in (0, 1)]
+            changed.append(number)
+    return changed

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from fontTools.ttLib.tables._g_l_y_f import Glyph
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
@@ -19,8 +20,9 @@ from ...outlines.masters import Masters
 from ...readers import Font
 from ..font.font_file import drop_signature, saved, stored_names
 from ..font.variable_glyf import Gvar, placed_by_points, put_glyphs
-from .char_strings import CharStringContours
+from .char_strings import CharStringContours, char_strings
 from .glyf_contours import GlyfContours
+from .programs import share
 from .stored import Stored
 
 OUTLINES = ("glyf", "loca", "gvar", "CFF ", "CFF2")
@@ -54,6 +56,7 @@ class FontEdit:
         font.recalcBBoxes = False
         self._names = stored_names(source, font)
         self._new: dict[str, Glyph] = {}
+        self._strings: list[Any] = []
         if "glyf" in font:
             self._gvar = Gvar(font) if "gvar" in font else None
             self._counted = placed_by_points(font)
@@ -86,9 +89,11 @@ class FontEdit:
     def put(self, old: Masters, new: Masters) -> None:
         """Put a glyph in, with other points than it was read with."""
         self.stored(old).put(new)
-        if "glyf" in self.font:
-            name = self._names[old.name]
-            self._new[name] = self.font["glyf"][name]
+        name, font = self._names[old.name], self.font
+        if "glyf" in font:
+            self._new[name] = font["glyf"][name]
+        else:
+            self._strings.append(char_strings(font)[name])
 
     def written(self) -> bytes:
         """The font as a file's bytes; tables that hold no outlines are as they were."""
@@ -97,6 +102,7 @@ class FontEdit:
         follows = put_glyphs(font, self._new) if is_glyf else False
         if is_glyf and self._gvar is not None:
             self._gvar.store(font)
+        share(self._strings)
         drop_signature(font)
         for tag in font.reader.keys() if font.reader else ():
             if tag in font.tables and tag not in OUTLINES and not (tag == "head" or (follows and tag in BOUNDS)):

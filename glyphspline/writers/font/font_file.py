@@ -162,7 +162,7 @@ class _InPlace:
         if stays(result, self.flavour):
             return Drawn(None, None, 0.0)
         width = stored_width(self.font, name, self.strings[name].private) if self.flavour == "otf" else None
-        drawn = drawn_result(result, tolerance, self.flavour, width, extrema)
+        drawn = drawn_result(result, tolerance, self.flavour, width, extrema, in_place=True)
         if self.flavour == "ttf":
             self.new[name] = drawn.data
         else:

@@ -75,13 +75,15 @@ def fitting_tolerance(tolerance: float, flavour: Flavour) -> float:
 
 
 def drawn_result(
-    result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None, extrema: bool = True
-) -> Drawn:
+    result: GlyphResult, tolerance: float, flavour: Flavour, width: float | None, extrema: bool = True,
+    in_place: bool = False,
+) -> Drawn:  # fmt: skip
     """A converted glyph within ``tolerance`` of its source; ``width`` is for :func:`char_string`.
 
     Quadratics have as few points as follow the result; with continuity "g2" the source itself, of which what need not
-    change stays. In CFF, with ``extrema``, points are added at extrema, but not where rounding them moves a segment
-    farther than the tolerance leaves room for and than rounding it whole does.
+    change stays. With these a glyph written ``in_place`` of a TrueType glyph keeps its directions, which composites
+    rely on. In CFF, with ``extrema``, points are added at extrema, but not where rounding them moves a segment farther
+    than the tolerance leaves room for and than rounding it whole does.
     """
     outline, g2 = result.outline, result.options.is_for_fonts
     name, em = outline.name, outline.metrics.units_per_em
@@ -90,8 +92,7 @@ def drawn_result(
     deviation = max((value for value in measured if value is not None), default=0.0)
     room = max(tolerance - deviation, 0.0) if known else math.inf
     if flavour == "ttf" and g2:
-        as_is = (outline.arrays.degrees < 3).all()
-        contours = list(outline.contours) if as_is else oriented(outline.contours, flavour)
+        contours = list(outline.contours) if in_place else oriented(outline.contours, flavour)
         data, error = in_quadratics(contours, result.options, tolerance, em, name)
         return Drawn(data, bounds_of(data, []), error + outline.snapped)
     exact = oriented([contour.curve for contour in result.contours], flavour)
