@@ -14,6 +14,10 @@ Point = tuple[float, float]
 PER_EM = 1e-3
 """The tolerance without another, as a share of the old em."""
 
+EVEN = 1e-6
+"""Share of the tolerance by which a distance may exceed it and still be equal: contours moved by just the tolerance are
+within it, whatever rounding adds to the bound."""
+
 
 @dataclass(frozen=True)
 class Apart:
@@ -55,8 +59,9 @@ class Difference:
         identical: the contours are the same numbers in the same order. All that follows is 0 or empty then, but for the
             advances.
         bound: certified: no point of either outline is farther from the other. Infinite if one of them is empty.
-        seen: the largest distance of a point from the other outline that was found; ``bound`` exceeds it by no more
-            than 1 %, or 0.01 thousandths of the em.
+        seen: certified: some point of either outline is as far as that from the other; the largest such distance that
+            was found. ``bound`` exceeds it by no more than 1 %, or 0.01 thousandths of the em, and the tolerance of the
+            comparison is not between them, unless the outlines are not known as closely as that.
         worst: where that is; None if the outlines are identical, or one is empty.
         advance, new_advance: advances. scale: by which the new one was multiplied, to have the same em.
         contours_gone: numbers of old contours without a partner in the new outline. contours_new: and the other way.
@@ -79,6 +84,7 @@ class Difference:
     contours_new: tuple[int, ...] = ()
     kinks_gone: tuple[Turn, ...] = ()
     kinks_new: tuple[Turn, ...] = ()
+    ink: float | None = None
 
     @property
     def is_none(self) -> bool:
@@ -86,9 +92,17 @@ class Difference:
         return self.identical and self.advance == self.new_advance
 
     def is_beyond(self, tolerance: float) -> bool:
-        """Whether the outlines are farther apart, the advance changes by more, or contours came or went."""
-        moved = abs(self.new_advance - self.advance)
-        return self.bound > tolerance or moved > tolerance or bool(self.contours_gone or self.contours_new)
+        """Whether the outlines are seen farther apart, the advance changes by more, or contours came or went."""
+        limit, moved = tolerance * (1 + EVEN), abs(self.new_advance - self.advance)
+        return self.seen > limit or moved > limit or bool(self.contours_gone or self.contours_new)
+
+    def is_undecided(self, tolerance: float) -> bool:
+        """Whether nothing is seen beyond the tolerance, and the distance is not certified to be within it.
+
+        That is for outlines that are not known as closely as the tolerance asks, or that would take minutes; and for
+        another tolerance than that of the comparison.
+        """
+        return self.bound > tolerance * (1 + EVEN) and not self.is_beyond(tolerance)
 
     def facts(self) -> dict[str, Any]:
         """As JSON data; an infinite distance is null."""
