@@ -109,19 +109,26 @@ def _crossing(points: FloatArray, sides: FloatArray, follows: IntArray, starts: 
     low, high = np.minimum(points, points + sides), np.maximum(points, points + sides)
     lefts = [low[a:b, 0].min(initial=np.inf) for a, b in pairwise(starts.tolist())]
     rank = np.argsort(np.argsort(np.repeat(lefts, np.diff(starts)), kind="stable"))
+    for i, j in box_pairs(low, high):
+        i, j = np.where(rank[i] < rank[j], [i, j], [j, i])
+        near = (follows[i] != j) & (follows[j] != i)
+        i, j = i[near], j[near]
+        begin, q, s = points[j] - points[i], sides[i], sides[j]
+        split = (cross(q, begin) > 0) != (cross(q, begin + s) > 0)
+        split &= (cross(s, -begin) > 0) != (cross(s, q - begin) > 0)
+        yield np.stack([i[split], j[split]], axis=1)
+
+
+def box_pairs(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Pairs of boxes that overlap or touch, each once, a million candidates at a time; of their corners (n, 2)."""
     order = np.argsort(low[:, 0], kind="stable")
     counts = np.searchsorted(low[order, 0], high[order, 0], side="right") - np.arange(len(order)) - 1
     for part in np.array_split(np.arange(len(order)), 1 + int(counts.sum()) // 1_000_000):
         first = np.repeat(part, counts[part])
         behind = np.arange(len(first)) - np.repeat(offsets_of(counts[part])[:-1], counts[part])
         i, j = order[first], order[first + 1 + behind]
-        i, j = np.where(rank[i] < rank[j], [i, j], [j, i])
-        near = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1]) & (follows[i] != j) & (follows[j] != i)
-        i, j = i[near], j[near]
-        begin, q, s = points[j] - points[i], sides[i], sides[j]
-        split = (cross(q, begin) > 0) != (cross(q, begin + s) > 0)
-        split &= (cross(s, -begin) > 0) != (cross(s, q - begin) > 0)
-        yield np.stack([i[split], j[split]], axis=1)
+        near = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
+        yield i[near], j[near]
 
 
 def _loops(after: IntArray, order: IntArray) -> Iterator[list[int]]:
