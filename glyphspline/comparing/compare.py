@@ -66,10 +66,11 @@ def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, toler
     far = np.max([np.abs(contours.points).max(initial=0.0) for contours in (mine, its)])
     if not far < em * PER_EM / ROUNDING:
         raise GlyphsplineError(f"coordinates up to {far:.3g} are too large to be compared", glyph=old.name)
-    distances = _distances(mine, its, em / 1000, tolerance * (1 + EVEN), old.snapped + scale * new.snapped)
+    distances = _distances(mine, its, em, tolerance, old.snapped + scale * new.snapped)
     hulls, other_hulls = (extents(all_cubics(contours), contours.offsets) for contours in (mine, its))
     # Share of the em by which the extents of two contours may differ that are partners.
     gone, came = without_partner(np.abs(hulls[:, None] - other_hulls).max(axis=2), 0.1 * em)
+    gone, came = (wider(each, 2 * tolerance, of) for each, of in ((gone, hulls), (came, other_hulls)))
     # Share of the em by which a kink may move with its outline and still be the same.
     reach = max(tolerance, min(distances["bound"], 0.01 * em))
     turns_gone, turns_new = unmatched(turns(old), turns(new, scale), reach)
@@ -78,20 +79,20 @@ def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, toler
     }  # fmt: skip
 
 
-def _distances(mine: ContourArrays, its: ContourArrays, unit: float, tolerance: float, snapped: float) -> dict[str, Any]:
+def _distances(mine: ContourArrays, its: ContourArrays, em: float, tolerance: float, snapped: float) -> dict[str, Any]:
     """How far outlines are apart, and how their ink differs; ``snapped``: by how much they may be off themselves."""
+    from .changed_ink import ink_difference
     from .following import follow
     from .outline_distance import chains_of, outline_distance
 
     if not (len(mine.degrees) and len(its.degrees)):
         return {"bound": inf, "seen": inf}
-    old, new = chains_of(mine), chains_of(its)
-    row, nearest = outline_distance(old, new, unit, tolerance - snapped)
+    old, new, limit = chains_of(mine), chains_of(its), tolerance * (1 + EVEN)
+    row, nearest = outline_distance(old, new, em / 1000, tolerance - snapped)
     bound, seen, x, y, side, contour, near_x, near_y = row.tolist()
     bound, seen = bound + snapped, max(seen - snapped, 0.0)
-    ink = None
-    if not (bound <= tolerance and follow(old, new, nearest[: len(old.cubics), :2], tolerance - snapped)):
-        ink = None
+    explained = bound <= limit and follow(old, new, nearest[: len(old.cubics), :2], limit - snapped)
+    ink = None if explained or seen > limit else ink_difference(mine, its, limit + snapped, em)
     worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
     return {"bound": bound, "seen": seen, "worst": worst, "ink": ink}
 
@@ -125,6 +126,12 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
     near = costs[rows, columns] <= most
     gone, came = (set(range(n)) - set(p[near].tolist()) for n, p in zip(costs.shape, (rows, columns), strict=True))
     return tuple(sorted(gone)), tuple(sorted(came))
+
+
+def wider(which: tuple[int, ...], least: float, hulls: FloatArray) -> tuple[int, ...]:
+    """Those of the contours that are wider in some direction; ``hulls``: their :func:`extents`."""
+    half = DIRECTIONS // 2
+    return tuple(c for c in which if (hulls[c, :half] + hulls[c, half : 2 * half]).max() > least)
 
 
 def turns(outline: Outline, scale: float = 1.0) -> list[Turn]:

@@ -50,6 +50,29 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class Ink:
+    """How the ink of two outlines differs: what contours wind around, by the nonzero rule.
+
+    Attributes:
+        changed: area of what only one of them fills, in square units. error: by which it may be more or less.
+        area, new_area: what each of them fills.
+        lost: number of islands and counters that the new one has not, or that it has in one with others. gained: the
+            other way round. Those narrower than two tolerances of the comparison do not count.
+        depth: certified: a point of changed ink is as far as that from both outlines; 0 if none was found that is
+            beyond the tolerance of the comparison. deepest: the point.
+    """
+
+    changed: float
+    error: float
+    area: float
+    new_area: float
+    lost: int = 0
+    gained: int = 0
+    depth: float = 0.0
+    deepest: Point | None = None
+
+
+@dataclass(frozen=True)
 class Difference:
     """What differs between two outlines of one glyph. Lengths and points are in units of the old one's em.
 
@@ -64,8 +87,11 @@ class Difference:
             comparison is not between them, unless the outlines are not known as closely as that.
         worst: where that is; None if the outlines are identical, or one is empty.
         advance, new_advance: advances. scale: by which the new one was multiplied, to have the same em.
-        contours_gone: numbers of old contours without a partner in the new outline. contours_new: and the other way.
+        contours_gone: numbers of old contours without a partner in the new outline, but for those that are no wider
+            than two tolerances of the comparison. contours_new: and the other way.
         kinks_gone: kinks of the old outline that the new one does not have. kinks_new: and the other way.
+        ink: how the ink differs. None where it was not measured: the outlines are seen beyond the tolerance of the
+            comparison, or contours run beside each other within it, so that it explains what ink changed.
     """
 
     glyph: str
@@ -84,7 +110,7 @@ class Difference:
     contours_new: tuple[int, ...] = ()
     kinks_gone: tuple[Turn, ...] = ()
     kinks_new: tuple[Turn, ...] = ()
-    ink: float | None = None
+    ink: Ink | None = None
 
     @property
     def is_none(self) -> bool:
@@ -92,9 +118,11 @@ class Difference:
         return self.identical and self.advance == self.new_advance
 
     def is_beyond(self, tolerance: float) -> bool:
-        """Whether the outlines are seen farther apart, the advance changes by more, or contours came or went."""
+        """Whether the outlines are seen farther apart, the advance changes by more, contours came or went, or ink did
+        that is deeper."""
         limit, moved = tolerance * (1 + EVEN), abs(self.new_advance - self.advance)
-        return self.seen > limit or moved > limit or bool(self.contours_gone or self.contours_new)
+        deep = self.ink is not None and self.ink.depth > limit
+        return self.seen > limit or moved > limit or deep or bool(self.contours_gone or self.contours_new)
 
     def is_undecided(self, tolerance: float) -> bool:
         """Whether nothing is seen beyond the tolerance, and the distance is not certified to be within it.

@@ -30,6 +30,7 @@ from ..curves.pairing import ROUNDING, apart
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray
+from .difference import EVEN
 
 SHARP, SLACK = 0.01, 0.01
 """The bound exceeds the distance seen by no more than this share of it, or this many thousandths of an em. Share of
@@ -216,9 +217,9 @@ def look(
 
 @inlined
 def enough(seen: float, least: float, tolerance: float) -> float:
-    """The bound up to which a section is not halved."""
-    limit = seen + max(least, SHARP * seen)
-    return limit if seen > tolerance else min(limit, tolerance)
+    """The bound up to which a section is not halved: within the tolerance, or even with it, while nothing is beyond."""
+    limit, even = seen + max(least, SHARP * seen), tolerance * (1.0 + EVEN)
+    return limit if seen > even else min(limit, min(even, max(tolerance, seen * (1.0 + EVEN))))
 
 
 @compiled
