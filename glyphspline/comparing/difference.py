@@ -71,6 +71,11 @@ class Ink:
     depth: float = 0.0
     deepest: Point | None = None
 
+    @property
+    def share(self) -> str:
+        """What changed, of what the old one fills, for people."""
+        return f"{100 * self.changed / self.area:.3g} %" if self.area else "all"
+
 
 @dataclass(frozen=True)
 class Difference:
