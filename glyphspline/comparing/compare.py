@@ -81,7 +81,7 @@ def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, toler
 
 def _distances(mine: ContourArrays, its: ContourArrays, em: float, tolerance: float, snapped: float) -> dict[str, Any]:
     """How far outlines are apart, and how their ink differs; ``snapped``: by how much they may be off themselves."""
-    from .changed_ink import ink_difference
+    from .changed_ink import SHARP, ink_difference
     from .following import follow
     from .outline_distance import chains_of, outline_distance
 
@@ -91,7 +91,7 @@ def _distances(mine: ContourArrays, its: ContourArrays, em: float, tolerance: fl
     row, nearest = outline_distance(old, new, em / 1000, tolerance - snapped)
     bound, seen, x, y, side, contour, near_x, near_y = row.tolist()
     bound, seen = bound + snapped, max(seen - snapped, 0.0)
-    explained = bound <= limit and follow(old, new, nearest[: len(old.cubics), :2], limit - snapped)
+    explained = bound <= limit and follow(old, new, nearest[: len(old.cubics), :2], limit * (1 + SHARP) - snapped)
     ink = None if explained or seen > limit else ink_difference(mine, its, limit + snapped, em)
     worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
     return {"bound": bound, "seen": seen, "worst": worst, "ink": ink}

@@ -60,6 +60,8 @@ class Ink:
             other way round. Those narrower than two tolerances of the comparison do not count.
         depth: certified: a point of changed ink is as far as that from both outlines; 0 if none was found that is
             beyond the tolerance of the comparison. deepest: the point.
+        complete: none is farther than that, or the tolerance, by more than a quarter. Not for outlines in which it
+            would take minutes to tell.
     """
 
     changed: float
@@ -70,6 +72,7 @@ class Ink:
     gained: int = 0
     depth: float = 0.0
     deepest: Point | None = None
+    complete: bool = True
 
     @property
     def share(self) -> str:
@@ -84,8 +87,8 @@ class Difference:
     Attributes:
         glyph, gid: name and index in the old font. new_glyph, new_gid: in the new one.
         unicodes: code points of either, ascending.
-        identical: the contours are the same numbers in the same order. All that follows is 0 or empty then, but for the
-            advances.
+        identical: the contours are the same numbers in the same order. All that follows is 0, empty or None then, but
+            for the advances.
         bound: certified: no point of either outline is farther from the other. Infinite if one of them is empty.
         seen: certified: some point of either outline is as far as that from the other; the largest such distance that
             was found. ``bound`` exceeds it by no more than 1 %, or 0.01 thousandths of the em, and the tolerance of the
@@ -130,12 +133,13 @@ class Difference:
         return self.seen > limit or moved > limit or deep or bool(self.contours_gone or self.contours_new)
 
     def is_undecided(self, tolerance: float) -> bool:
-        """Whether nothing is seen beyond the tolerance, and the distance is not certified to be within it.
+        """Whether nothing is seen beyond the tolerance, and distance and ink are not certified to be within it.
 
         That is for outlines that are not known as closely as the tolerance asks, or that would take minutes; and for
         another tolerance than that of the comparison.
         """
-        return self.bound > tolerance * (1 + EVEN) and not self.is_beyond(tolerance)
+        open_ink = self.ink is not None and not self.ink.complete
+        return (self.bound > tolerance * (1 + EVEN) or open_ink) and not self.is_beyond(tolerance)
 
     def facts(self) -> dict[str, Any]:
         """As JSON data; an infinite distance is null."""

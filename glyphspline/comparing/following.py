@@ -25,7 +25,7 @@ def follow(old: Chains, new: Chains, nearest: FloatArray, tolerance: float) -> b
     """Whether contours follow each other within the tolerance, one by one, all in their direction or all against it.
 
     Args:
-        nearest: (m, 2) segments of the new outline, and parameters on them, nearest to the beginnings of the m old ones.
+        nearest: (m, 2) segments of the new outline, and parameters on them, nearest to where the m old ones begin.
     """
     if len(old.offsets) != len(new.offsets):
         return False

@@ -54,8 +54,8 @@ Miss = tuple[float, float]
 
 COLUMNS = 8
 BOUND, SEEN, X, Y, SIDE, CONTOUR, NEAR_X, NEAR_Y = range(COLUMNS)
-"""Columns of distances: certified bound; largest distance seen, rounded down as bounds are rounded up; the point where, of outline SIDE (0 old, 1 new), its
-contour, and the nearest point of the other outline. Nothing seen: SIDE is -1."""
+"""Columns of distances: certified bound; certified distance of a point, as rounding leaves it; the point, of outline
+SIDE (0 old, 1 new), its contour, and the nearest point of the other outline. Nothing seen: SIDE is -1."""
 
 
 class Chains(NamedTuple):

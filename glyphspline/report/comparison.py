@@ -63,8 +63,8 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
 
 
 def marks(each: Difference, em: float, half: float | None = None) -> str:
-    """The worst place: a ring in the drawing of the glyph, a line from point to point in a close-up; kinks; and a circle
-    in which all ink changed."""
+    """The worst place: a ring in the drawing of the glyph, a line from point to point in a close-up; a circle in which
+    all ink changed; and kinks."""
     found = []
     for kind, turns in (("gone", each.kinks_gone), ("came", each.kinks_new)):
         found += [ring(turn.point, 0.012 * em if half is None else half / 14, f"kink {kind}") for turn in turns]
@@ -102,7 +102,9 @@ def drawing(title: str, box: Box, paths: Sequence[str], more: str, kind: str = "
 
 def lines(each: Difference) -> list[tuple[str, str]]:
     """What differs, in words."""
-    found = [("Distance", "one is empty" if isinf(each.bound) else f"≤ {rounded_up(each.bound / (1 + EVEN), 4):g} units")]
+    found = [
+        ("Distance", "one is empty" if isinf(each.bound) else f"≤ {rounded_up(each.bound / (1 + EVEN), 4):g} units")
+    ]
     if each.worst is not None:
         found.append(("Worst", f"{each.worst.outline}, contour {each.worst.contour}, {where(each.worst.point)}"))
     if each.ink is not None and each.ink.deepest is not None:
