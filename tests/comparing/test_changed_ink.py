@@ -30,6 +30,7 @@ def box(x: float, y: float, width: float, height: float, turn: int = 1) -> gs.Co
 
 
 RING = [box(0, 0, 300, 200), box(50, 50, 60, 40, -1)]
+PATCH = box(150, 60, 20, 20)
 LENS = [box(0, 0, 100, 100), box(80, 20, 100, 40)]
 
 
@@ -49,7 +50,7 @@ def compared(old: list[gs.Contour], new: list[gs.Contour], angle: float, toleran
         pytest.param(RING, [RING[0], RING[1].reversed()], 2400, 1, 0, 20, id="a counter filled"),
         pytest.param([RING[0], RING[1].reversed()], RING, 2400, 0, 1, 20, id="a counter cut"),
         pytest.param(LENS, [LENS[0], LENS[1].reversed()], 800, 0, 2, 10, id="an overlap cut"),
-        pytest.param([*RING, box(150, 60, 20, 20)], [*RING, box(150, 60, 20, 20, -1)], 400, 0, 1, 10, id="a patch cuts"),
+        pytest.param([*RING, PATCH], [*RING, PATCH.reversed()], 400, 0, 1, 10, id="a patch cuts"),
         pytest.param([RING[0], RING[0]], [RING[0], RING[0].reversed()], 60000, 1, 0, 100, id="a twin cuts"),
     ],
 )  # fmt: skip
