@@ -102,9 +102,7 @@ def drawing(title: str, box: Box, paths: Sequence[str], more: str, kind: str = "
 
 def lines(each: Difference) -> list[tuple[str, str]]:
     """What differs, in words."""
-    found = [
-        ("Distance", "one is empty" if isinf(each.bound) else f"≤ {rounded_up(each.bound / (1 + EVEN), 4):g} units")
-    ]
+    found = [("Distance", distance(each.bound))]
     if each.worst is not None:
         found.append(("Worst", f"{each.worst.outline}, contour {each.worst.contour}, {where(each.worst.point)}"))
     if each.ink is not None and each.ink.deepest is not None:
@@ -123,6 +121,13 @@ def lines(each: Difference) -> list[tuple[str, str]]:
     ):
         found += [(f"{name} gone", gone)] * bool(gone) + [(f"{name} new", came)] * bool(came)
     return found
+
+
+def distance(bound: float) -> str:
+    """A bound for people; infinite if one of the outlines is empty."""
+    if isinf(bound):
+        return "one is empty"
+    return f"≤ {rounded_up(bound / (1 + EVEN), 4):g} units" if bound >= 0.001 else "< 0.001 units"
 
 
 def kinks(turns: Sequence[Turn]) -> str:
