@@ -11,6 +11,7 @@ from .checks.kinks import kinks as kinks
 from .comparing.compare import compare as compare
 from .comparing.difference import Apart as Apart
 from .comparing.difference import Difference as Difference
+from .comparing.difference import Ink as Ink
 from .comparing.difference import Turn as Turn
 from .curves.bspline import Spline as Spline
 from .datasets.load import Loaded as Loaded

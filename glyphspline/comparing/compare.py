@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from ..errors import GlyphsplineError, is_positive, require
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.outline import Outline
 from ..types import FloatArray, IntArray
-from .difference import PER_EM, SIDES, Apart, Difference, Turn
+from .difference import EVEN, PER_EM, SIDES, Apart, Difference, Turn
 
 DIRECTIONS = 16
 """Directions in which contours are measured to pair them."""
@@ -59,25 +60,41 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
 def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, tolerance: float | None) -> dict[str, Any]:
     """How outlines differ whose contours are not the same; ``its``: the contours of the new one, scaled."""
     from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
-    from .outline_distance import outline_distance
 
     mine, em = old.arrays, old.metrics.units_per_em
+    tolerance = em * PER_EM if tolerance is None else tolerance
     far = np.max([np.abs(contours.points).max(initial=0.0) for contours in (mine, its)])
     if not far < em * PER_EM / ROUNDING:
         raise GlyphsplineError(f"coordinates up to {far:.3g} are too large to be compared", glyph=old.name)
-    bound, seen, x, y, side, contour, near_x, near_y = outline_distance(mine, its, em / 1000).tolist()
-    bound += old.snapped + scale * new.snapped
+    distances = _distances(mine, its, em, tolerance, old.snapped + scale * new.snapped)
     hulls, other_hulls = (extents(all_cubics(contours), contours.offsets) for contours in (mine, its))
     # Share of the em by which the extents of two contours may differ that are partners.
     gone, came = without_partner(np.abs(hulls[:, None] - other_hulls).max(axis=2), 0.1 * em)
+    gone, came = (wider(each, 2 * tolerance, of) for each, of in ((gone, hulls), (came, other_hulls)))
     # Share of the em by which a kink may move with its outline and still be the same.
-    reach = max(em * PER_EM if tolerance is None else tolerance, min(bound, 0.01 * em))
+    reach = max(tolerance, min(distances["bound"], 0.01 * em))
     turns_gone, turns_new = unmatched(turns(old), turns(new, scale), reach)
-    worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
-    return {
-        "bound": bound, "seen": seen, "worst": worst, "contours_gone": gone, "contours_new": came,
-        "kinks_gone": turns_gone, "kinks_new": turns_new,
+    return distances | {
+        "contours_gone": gone, "contours_new": came, "kinks_gone": turns_gone, "kinks_new": turns_new,
     }  # fmt: skip
+
+
+def _distances(mine: ContourArrays, its: ContourArrays, em: float, tolerance: float, snapped: float) -> dict[str, Any]:
+    """How far outlines are apart, and how their ink differs; ``snapped``: by how much they may be off themselves."""
+    from .changed_ink import SHARP, ink_difference
+    from .following import follow
+    from .outline_distance import chains_of, outline_distance
+
+    if not (len(mine.degrees) and len(its.degrees)):
+        return {"bound": inf, "seen": inf}
+    old, new, limit = chains_of(mine), chains_of(its), tolerance * (1 + EVEN)
+    row, nearest = outline_distance(old, new, em / 1000, tolerance - snapped)
+    bound, seen, x, y, side, contour, near_x, near_y = row.tolist()
+    bound, seen = bound + snapped, max(seen - snapped, 0.0)
+    explained = bound <= limit and follow(old, new, nearest[: len(old.cubics), :2], limit * (1 + SHARP) - snapped)
+    ink = None if explained or seen > limit else ink_difference(mine, its, limit + snapped, em)
+    worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
+    return {"bound": bound, "seen": seen, "worst": worst, "ink": ink}
 
 
 def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:
@@ -109,6 +126,12 @@ def without_partner(costs: FloatArray, most: float) -> tuple[tuple[int, ...], tu
     near = costs[rows, columns] <= most
     gone, came = (set(range(n)) - set(p[near].tolist()) for n, p in zip(costs.shape, (rows, columns), strict=True))
     return tuple(sorted(gone)), tuple(sorted(came))
+
+
+def wider(which: tuple[int, ...], least: float, hulls: FloatArray) -> tuple[int, ...]:
+    """Those of the contours that are wider in some direction; ``hulls``: their :func:`extents`."""
+    half = DIRECTIONS // 2
+    return tuple(c for c in which if (hulls[c, :half] + hulls[c, half : 2 * half]).max() > least)
 
 
 def turns(outline: Outline, scale: float = 1.0) -> list[Turn]:

@@ -14,6 +14,10 @@ Point = tuple[float, float]
 PER_EM = 1e-3
 """The tolerance without another, as a share of the old em."""
 
+EVEN = 1e-6
+"""Share of the tolerance by which a distance may exceed it and still be equal: contours moved by just the tolerance are
+within it, whatever rounding adds to the bound."""
+
 
 @dataclass(frozen=True)
 class Apart:
@@ -46,21 +50,56 @@ class Turn:
 
 
 @dataclass(frozen=True)
+class Ink:
+    """How the ink of two outlines differs: what contours wind around, by the nonzero rule.
+
+    Attributes:
+        changed: area of what only one of them fills, in square units. error: by which it may be more or less.
+        area, new_area: what each of them fills.
+        lost: number of islands and counters that the new one has not, or that it has in one with others. gained: the
+            other way round. Those narrower than two tolerances of the comparison do not count.
+        depth: certified: a point of changed ink is as far as that from both outlines; 0 if none was found that is
+            beyond the tolerance of the comparison. deepest: the point.
+        complete: none is farther than that, or the tolerance, by more than a quarter. Not for outlines in which it
+            would take minutes to tell.
+    """
+
+    changed: float
+    error: float
+    area: float
+    new_area: float
+    lost: int = 0
+    gained: int = 0
+    depth: float = 0.0
+    deepest: Point | None = None
+    complete: bool = True
+
+    @property
+    def share(self) -> str:
+        """What changed, of what the old one fills, for people."""
+        return f"{100 * self.changed / self.area:.3g} %" if self.area else "all"
+
+
+@dataclass(frozen=True)
 class Difference:
     """What differs between two outlines of one glyph. Lengths and points are in units of the old one's em.
 
     Attributes:
         glyph, gid: name and index in the old font. new_glyph, new_gid: in the new one.
         unicodes: code points of either, ascending.
-        identical: the contours are the same numbers in the same order. All that follows is 0 or empty then, but for the
-            advances.
+        identical: the contours are the same numbers in the same order. All that follows is 0, empty or None then, but
+            for the advances.
         bound: certified: no point of either outline is farther from the other. Infinite if one of them is empty.
-        seen: the largest distance of a point from the other outline that was found; ``bound`` exceeds it by no more
-            than 1 %, or 0.01 thousandths of the em.
+        seen: certified: some point of either outline is as far as that from the other; the largest such distance that
+            was found. ``bound`` exceeds it by no more than 1 %, or 0.01 thousandths of the em, and the tolerance of the
+            comparison is not between them, unless the outlines are not known as closely as that.
         worst: where that is; None if the outlines are identical, or one is empty.
         advance, new_advance: advances. scale: by which the new one was multiplied, to have the same em.
-        contours_gone: numbers of old contours without a partner in the new outline. contours_new: and the other way.
+        contours_gone: numbers of old contours without a partner in the new outline, but for those that are no wider
+            than two tolerances of the comparison. contours_new: and the other way.
         kinks_gone: kinks of the old outline that the new one does not have. kinks_new: and the other way.
+        ink: how the ink differs. None where it was not measured: the outlines are seen beyond the tolerance of the
+            comparison, or contours run beside each other within it, so that it explains what ink changed.
     """
 
     glyph: str
@@ -79,6 +118,7 @@ class Difference:
     contours_new: tuple[int, ...] = ()
     kinks_gone: tuple[Turn, ...] = ()
     kinks_new: tuple[Turn, ...] = ()
+    ink: Ink | None = None
 
     @property
     def is_none(self) -> bool:
@@ -86,9 +126,20 @@ class Difference:
         return self.identical and self.advance == self.new_advance
 
     def is_beyond(self, tolerance: float) -> bool:
-        """Whether the outlines are farther apart, the advance changes by more, or contours came or went."""
-        moved = abs(self.new_advance - self.advance)
-        return self.bound > tolerance or moved > tolerance or bool(self.contours_gone or self.contours_new)
+        """Whether the outlines are seen farther apart, the advance changes by more, contours came or went, or ink did
+        that is deeper."""
+        limit, moved = tolerance * (1 + EVEN), abs(self.new_advance - self.advance)
+        deep = self.ink is not None and self.ink.depth > limit
+        return self.seen > limit or moved > limit or deep or bool(self.contours_gone or self.contours_new)
+
+    def is_undecided(self, tolerance: float) -> bool:
+        """Whether nothing is seen beyond the tolerance, and distance and ink are not certified to be within it.
+
+        That is for outlines that are not known as closely as the tolerance asks, or that would take minutes; and for
+        another tolerance than that of the comparison.
+        """
+        open_ink = self.ink is not None and not self.ink.complete
+        return (self.bound > tolerance * (1 + EVEN) or open_ink) and not self.is_beyond(tolerance)
 
     def facts(self) -> dict[str, Any]:
         """As JSON data; an infinite distance is null."""

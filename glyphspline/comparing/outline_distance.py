@@ -8,7 +8,8 @@ gives a bound, so the least of these is taken.
 
 Points whose nearest point is known give the distance *seen*, from below: ends of segments first, then middles of
 sections that are halved. The section with the largest bound is halved first. A section is done when its bound exceeds
-the largest distance seen by no more than is asked.
+the largest distance seen by no more than is asked. While nothing is seen beyond the tolerance, it is not done before
+its bound is within: so the distance is refined until the tolerance divides the seen from the certified no more.
 
 The nearest point is sought on all contours, and none is missed. A stretch of a cubic over [a, b] is within
 ``bend (b - a)²`` of its chord at equal parameters, where ``bend`` is 3/4 of the largest second difference of its Bézier
@@ -29,6 +30,7 @@ from ..curves.pairing import ROUNDING, apart
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.segments import all_cubics
 from ..types import FloatArray, IntArray
+from .difference import EVEN
 
 SHARP, SLACK = 0.01, 0.01
 """The bound exceeds the distance seen by no more than this share of it, or this many thousandths of an em. Share of
@@ -45,12 +47,15 @@ STACK = 64
 """Stretches of a segment that wait to be searched: one a halving, and no parameter can be halved more often."""
 
 CLOSER = 2e-4
-"""Share of its distance by which a place may miss the nearest one."""
+"""Share of its distance by which a place may miss the nearest one, but where the distance seen comes from it."""
+
+Miss = tuple[float, float]
+"""By how much a place may miss the nearest one: a length, and a share of its distance. The larger one counts."""
 
 COLUMNS = 8
 BOUND, SEEN, X, Y, SIDE, CONTOUR, NEAR_X, NEAR_Y = range(COLUMNS)
-"""Columns of distances: certified bound; largest distance seen; the point where, of outline SIDE (0 old, 1 new), its
-contour, and the nearest point of the other outline. Nothing seen: SIDE is -1."""
+"""Columns of distances: certified bound; certified distance of a point, as rounding leaves it; the point, of outline
+SIDE (0 old, 1 new), its contour, and the nearest point of the other outline. Nothing seen: SIDE is -1."""
 
 
 class Chains(NamedTuple):
@@ -72,8 +77,9 @@ class Chains(NamedTuple):
     groups: FloatArray
 
 
-def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
-    """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,)."""
+def chains_of(contours: ContourArrays) -> Chains:
+    """The chains of an outline that is not empty."""
+    cubics, offsets = all_cubics(contours), contours.offsets
     boxes = np.concatenate([cubics.min(axis=1), cubics.max(axis=1)], axis=1)
     starts = np.arange(0, len(cubics), GROUP)
     low, high = np.minimum.reduceat(boxes[:, :2], starts), np.maximum.reduceat(boxes[:, 2:], starts)
@@ -105,14 +111,15 @@ def reached(cubics: FloatArray, s: int, guess: float, x: float, y: float) -> tup
 
 @compiled
 def nearest_on(
-    chains: Chains, s: int, x: float, y: float, best: float, slack: float, places: FloatArray
+    chains: Chains, s: int, x: float, y: float, best: float, miss: Miss, places: FloatArray
 ) -> tuple[float, float]:
-    """The parameter of segment s that is nearest a point, and its distance, if less than ``best`` by more than
-    ``slack``; or else NaN, and ``best``.
+    """The parameter of segment s that is nearest a point, and its distance, if it is less than ``best`` by more than it
+    may be missed; or else NaN, and ``best``.
 
     Args:
         places: (STACK, 2) scratch array.
     """
+    slack, closer = miss
     cubics, bend, at = chains.cubics, chains.bends[s], np.nan
     places[0, 0], places[0, 1] = 0.0, 1.0
     top = 0
@@ -126,7 +133,7 @@ def nearest_on(
         share = min(max(((x - ax) * ux + (y - ay) * uy) / whole, 0.0), 1.0) if whole > 0.0 else 0.0
         near = length(ax + share * ux - x, ay + share * uy - y)
         off = bend * (b - a) * (b - a)
-        allowed = max(slack, CLOSER * best)
+        allowed = max(slack, closer * best)
         if near - off >= best - allowed:
             continue
         guess = a + share * (b - a)
@@ -145,16 +152,15 @@ def nearest_on(
 
 @compiled
 def nearest_of_outline(
-    chains: Chains, x: float, y: float, s: int, z: float, slack: float, places: FloatArray
+    chains: Chains, x: float, y: float, s: int, z: float, miss: Miss, places: FloatArray
 ) -> tuple[int, float, float]:
     """The segment and parameter of an outline nearest a point, and its distance.
 
-    No point is nearer by more than ``slack`` or a share ``CLOSER``, whichever is larger.
-
     Args:
         s, z: where to begin. Where several places are as near, as far as that matters, the one near there is taken.
-        places: (STACK, 2) scratch array.
+        miss: no point is nearer by more. places: (STACK, 2) scratch array.
     """
+    slack, closer = miss
     at, best = reached(chains.cubics, s, z, x, y)
     segment = s
     for after in range(2):
@@ -166,54 +172,87 @@ def nearest_of_outline(
     for g in range(len(chains.groups)):
         if best <= slack:
             break
-        if from_box(chains.groups[g], x, y) >= best - max(slack, CLOSER * best):
+        if from_box(chains.groups[g], x, y) >= best - max(slack, closer * best):
             continue
         for k in range(GROUP * g, min(GROUP * (g + 1), len(chains.cubics))):
-            if from_box(chains.boxes[k], x, y) < best - max(slack, CLOSER * best):
-                guess, d = nearest_on(chains, k, x, y, best, slack, places)
+            if from_box(chains.boxes[k], x, y) < best - max(slack, closer * best):
+                guess, d = nearest_on(chains, k, x, y, best, miss, places)
                 if d < best:
                     segment, at, best = k, guess, d
     at, best = reached(chains.cubics, segment, at, x, y)  # where the guess was poor, Newton's steps were too few
     return segment, at, best
 
 
-def outline_distance(old: ContourArrays, new: ContourArrays, unit: float) -> FloatArray:
-    """(COLUMNS,) the distance of two outlines; ``unit``: a thousandth of the em."""
+def outline_distance(old: Chains, new: Chains, unit: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
+    """The distance of two outlines, (COLUMNS,); and what :func:`distance` gives.
+
+    Args:
+        unit: a thousandth of the em. tolerance: which the bound is to be below, or the distance seen above.
+    """
     row = np.zeros(COLUMNS)
     row[SIDE] = row[CONTOUR] = -1
-    if len(old.degrees) and len(new.degrees):
-        one, other = (chains_of(all_cubics(outline), outline.offsets) for outline in (old, new))
-        distance(one, other, SHARP * unit, row)
-    elif len(old.degrees) or len(new.degrees):
-        row[BOUND] = row[SEEN] = np.inf
-    return row
+    return row, distance(old, new, SHARP * unit, tolerance, row)
 
 
 @compiled
-def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
-    """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distance`."""
+def look(
+    chains: Chains, x: float, y: float, s: int, z: float, misses: tuple[Miss, Miss], places: FloatArray, row: FloatArray
+) -> tuple[int, float, bool]:
+    """The segment and parameter of an outline nearest a point, and whether that is farther than all that was seen:
+    it is in the row then.
+
+    Args:
+        s, z, places: see :func:`nearest_of_outline`.
+        misses: by how much the nearest place may be missed, and by how much where it is farther than all before.
+    """
+    s, z, d = nearest_of_outline(chains, x, y, s, z, misses[0], places)
+    if d > row[SEEN]:
+        s, z, d = nearest_of_outline(chains, x, y, s, z, misses[1], places)
+    if d <= row[SEEN]:
+        return s, z, False
+    row[SEEN], row[X], row[Y] = d, x, y
+    row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(chains.cubics, s, z)
+    return s, z, True
+
+
+@inlined
+def enough(seen: float, least: float, tolerance: float) -> float:
+    """The bound up to which a section is not halved: within the tolerance, or even with it, while nothing is beyond."""
+    limit, even = seen + max(least, SHARP * seen), tolerance * (1.0 + EVEN)
+    return limit if seen > even else min(limit, min(even, max(tolerance, seen * (1.0 + EVEN))))
+
+
+@compiled
+def distance(old: Chains, new: Chains, least: float, tolerance: float, row: FloatArray) -> FloatArray:
+    """The distance of two outlines, into a row of COLUMNS that are 0.
+
+    Args:
+        least: the bound need not exceed the distance seen by less than this, but where the tolerance is between them.
+
+    Returns:
+        (m + n, 4) segments of the other outline, and parameters on them, nearest to both ends of each segment: of the m
+        old ones, then of the n new ones.
+    """
     places, sections, marks = np.empty((STACK, 2)), np.empty((2, 1, 4, 2)), np.empty((DEEPEST + 2, 7))
     m, n = len(old.cubics), len(new.cubics)
-    # Of every segment: the bound; and the segment of the other outline, and parameter on it, nearest to both its ends.
     bounds, ends = np.empty(m + n), np.empty((m + n, 4))
-    slack = SLACK * least
+    rounding = ROUNDING * max(extent(old.cubics), extent(new.cubics))
+    misses, tolerance = ((SLACK * least, CLOSER), (rounding, 0.0)), tolerance - rounding
     for side in range(2):
         one, other, first = (old, new, 0) if side == 0 else (new, old, m)
         s, z = 0, 0.5
         for c in range(len(one.offsets) - 1):
             start = one.offsets[c]
             for i in range(start, one.offsets[c + 1]):
-                x, y = one.cubics[i, 0, 0], one.cubics[i, 0, 1]
-                s, z, d = nearest_of_outline(other, x, y, s, z, slack, places)
+                s, z, farther = look(other, one.cubics[i, 0, 0], one.cubics[i, 0, 1], s, z, misses, places, row)
                 ends[first + i, 0], ends[first + i, 1] = s, z
-                if d > row[SEEN]:
-                    row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, c
-                    row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
+                if farther:
+                    row[SIDE], row[CONTOUR] = side, c
             last = one.offsets[c + 1] - 1
             for i in range(start, last + 1):
                 j = i + 1 if i < last else start
                 ends[first + i, 2], ends[first + i, 3] = ends[first + j, 0], ends[first + j, 1]
-        limit = row[SEEN] + max(least, SHARP * row[SEEN])
+        limit = enough(row[SEEN], least, tolerance)
         for i in range(len(one.cubics)):
             e = ends[first + i]
             bounds[first + i] = section_bound(
@@ -223,7 +262,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
     order = ascending(-bounds)
     for k in range(m + n):
         at = order[k]
-        if bounds[at] <= row[SEEN] + max(least, SHARP * row[SEEN]):
+        if bounds[at] <= enough(row[SEEN], least, tolerance):
             bound = max(bound, bounds[at])
             break
         side = 0 if at < m else 1
@@ -233,9 +272,8 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             marks[0, 2 + q] = ends[at, q]
         top = 0
         while top >= 0:
-            limit = max(bound, row[SEEN] + max(least, SHARP * row[SEEN]))
             low, high, own = marks[top, 0], marks[top, 1], marks[top, 6]
-            if own <= limit or top >= DEEPEST or halvings >= MOST_HALVINGS:
+            if own <= max(bound, enough(row[SEEN], least, tolerance)) or top >= DEEPEST or halvings >= MOST_HALVINGS:
                 bound = max(bound, own)
                 top -= 1
                 continue
@@ -243,18 +281,18 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             middle = (low + high) / 2
             x, y, _, _, _, _ = jet(one.cubics, i, middle)
             s0, z0, s1, z1 = int(marks[top, 2]), marks[top, 3], int(marks[top, 4]), marks[top, 5]
-            s, z, d = nearest_of_outline(other, x, y, s0, z0, slack, places)
-            if d > row[SEEN]:
-                row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, one.owners[i]
-                row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
-                limit = max(bound, d + max(least, SHARP * d))
+            s, z, farther = look(other, x, y, s0, z0, misses, places, row)
+            if farther:
+                row[SIDE], row[CONTOUR] = side, one.owners[i]
+            limit = max(bound, enough(row[SEEN], least, tolerance))
             marks[top, 1], marks[top, 4], marks[top, 5] = middle, s, z
             marks[top, 6] = section_bound(one.cubics, i, low, middle, other, s0, z0, s, z, limit, sections)
             top += 1
             marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = middle, high, s, z
             marks[top, 4], marks[top, 5] = s1, z1
             marks[top, 6] = section_bound(one.cubics, i, middle, high, other, s, z, s1, z1, limit, sections)
-    row[BOUND] = max(bound, row[SEEN]) + ROUNDING * max(extent(old.cubics), extent(new.cubics))
+    row[BOUND], row[SEEN] = max(bound, row[SEEN]) + rounding, max(row[SEEN] - rounding, 0.0)
+    return ends
 
 
 @compiled

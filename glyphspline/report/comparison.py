@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import isinf
 
-from ..comparing.difference import Difference, Turn
+from ..comparing.difference import EVEN, Difference, Turn
 from ..outlines.outline import Contour, Contours, Outline
 from ..types import rounded_up, shortened
 from ..writers.svg.document import number, text, union, view_box_value
@@ -63,10 +63,13 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
 
 
 def marks(each: Difference, em: float, half: float | None = None) -> str:
-    """The worst place: a ring in the drawing of the glyph, a line from point to point in a close-up; and kinks."""
+    """The worst place: a ring in the drawing of the glyph, a line from point to point in a close-up; a circle in which
+    all ink changed; and kinks."""
     found = []
     for kind, turns in (("gone", each.kinks_gone), ("came", each.kinks_new)):
         found += [ring(turn.point, 0.012 * em if half is None else half / 14, f"kink {kind}") for turn in turns]
+    if each.ink is not None and each.ink.deepest is not None:
+        found.append(ring(each.ink.deepest, each.ink.depth, "ink"))
     if each.worst is not None:
         (ax, ay), (bx, by) = each.worst.point, each.worst.nearest
         found.append(
@@ -99,9 +102,17 @@ def drawing(title: str, box: Box, paths: Sequence[str], more: str, kind: str = "
 
 def lines(each: Difference) -> list[tuple[str, str]]:
     """What differs, in words."""
-    found = [("Distance", "one is empty" if isinf(each.bound) else f"≤ {rounded_up(each.bound, 4):g} units")]
+    found = [("Distance", distance(each.bound))]
     if each.worst is not None:
         found.append(("Worst", f"{each.worst.outline}, contour {each.worst.contour}, {where(each.worst.point)}"))
+    if each.ink is not None and each.ink.deepest is not None:
+        deep = f"up to {each.ink.depth:.3g} units from both outlines, at {where(each.ink.deepest)}"
+        found.append(("Ink", f"{each.ink.share} changed, {deep}"))
+        found += [
+            (f"Islands and counters {what}", f"{count}")
+            for what, count in (("lost", each.ink.lost), ("gained", each.ink.gained))
+            if count
+        ]
     if each.advance != each.new_advance:
         found.append(("Advance", f"{each.advance:g} → {each.new_advance:g}"))
     for name, gone, came in (
@@ -110,6 +121,13 @@ def lines(each: Difference) -> list[tuple[str, str]]:
     ):
         found += [(f"{name} gone", gone)] * bool(gone) + [(f"{name} new", came)] * bool(came)
     return found
+
+
+def distance(bound: float) -> str:
+    """A bound for people; infinite if one of the outlines is empty."""
+    if isinf(bound):
+        return "one is empty"
+    return f"≤ {rounded_up(bound / (1 + EVEN), 4):g} units" if bound >= 0.001 else "< 0.001 units"
 
 
 def kinks(turns: Sequence[Turn]) -> str:

@@ -200,10 +200,12 @@ def mending() -> None:
 
 
 def comparisons() -> None:
-    """Outlines compared: one moved, one that lacks a contour."""
+    """Outlines compared: one that lacks a contour, one with a contour turned round, so that it has other ink."""
     from ..comparing.compare import compare
 
     compare(SHAPES, Outline("shapes", contours=(LEAF.reversed(), SQUARE, DISC)))
+    ring, filled = ((DISC, Contour(0.5 * inner.points, inner.degrees)) for inner in (DISC.reversed(), DISC))
+    compare(Outline("ring", contours=ring), Outline("filled", contours=filled))
 
 
 def unfitted() -> None:

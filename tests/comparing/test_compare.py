@@ -335,12 +335,13 @@ def test_the_json_has_its_names() -> None:
     data = json.loads(said.stdout)
     assert list(data) == [
         "format", "old", "new", "tolerance", "scale", "beyond_tolerance", "compared", "identical", "beyond",
-        "only_old", "only_new", "renamed", "glyphs", "failed",
+        "undecided", "only_old", "only_new", "renamed", "glyphs", "failed",
     ]  # fmt: skip
     (glyph,) = data["glyphs"]
     assert list(glyph) == [
-        "beyond_tolerance", "glyph", "gid", "new_glyph", "new_gid", "unicodes", "identical", "bound", "seen", "worst",
-        "advance", "new_advance", "scale", "contours_gone", "contours_new", "kinks_gone", "kinks_new",
+        "beyond_tolerance", "undecided", "glyph", "gid", "new_glyph", "new_gid", "unicodes", "identical", "bound",
+        "seen", "worst", "advance", "new_advance", "scale", "contours_gone", "contours_new", "kinks_gone", "kinks_new",
+        "ink",
     ]  # fmt: skip
     assert list(glyph["worst"]) == ["outline", "contour", "point", "nearest"]
     assert glyph["unicodes"] == ["U+5584"]

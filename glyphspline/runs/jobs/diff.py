@@ -115,15 +115,22 @@ class FontDifference:
         return [each for each in self.differences if each.is_beyond(self.tolerance)]
 
     @property
+    def undecided(self) -> list[Difference]:
+        """The differences of which neither was shown: that they are within the tolerance, or beyond."""
+        return [each for each in self.differences if each.is_undecided(self.tolerance)]
+
+    @property
     def is_beyond(self) -> bool:
         """Whether anything is: a glyph that only one font has, or that could not be compared, always is."""
         return bool(self.glyphs.only_old or self.glyphs.only_new or self.unread or self.beyond)
 
     def worst_first(self) -> list[Difference]:
-        """The differences: those beyond the tolerance first, then by distance, change of the advance, and index."""
+        """The differences: those beyond the tolerance first, then those undecided; by distance, change of the advance,
+        and index."""
 
         def badness(own: Difference) -> tuple[float, ...]:
-            return not own.is_beyond(self.tolerance), -own.bound, -abs(own.new_advance - own.advance), own.gid
+            rank = 0 if own.is_beyond(self.tolerance) else 1 if own.is_undecided(self.tolerance) else 2
+            return rank, -own.bound, -abs(own.new_advance - own.advance), own.gid
 
         return sorted(self.differences, key=badness)
 
@@ -138,11 +145,17 @@ class FontDifference:
             "compared": self.identical + len(self.differences),
             "identical": self.identical,
             "beyond": len(self.beyond),
+            "undecided": len(self.undecided),
             "only_old": list(self.glyphs.only_old),
             "only_new": list(self.glyphs.only_new),
             "renamed": [list(names) for names in self.glyphs.renamed],
             "glyphs": [
-                {"beyond_tolerance": each.is_beyond(self.tolerance), **each.facts()} for each in self.differences
+                {
+                    "beyond_tolerance": each.is_beyond(self.tolerance),
+                    "undecided": each.is_undecided(self.tolerance),
+                    **each.facts(),
+                }
+                for each in self.differences
             ],
             "failed": [unread._asdict() for unread in self.unread],
         }
