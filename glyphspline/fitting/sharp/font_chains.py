@@ -31,7 +31,7 @@ class Quads(NamedTuple):
         c: (K, R, 2) control points. node: (K, R + 1, 2) where they meet. implied: (R + 1,) midway between control
             points.
         T: (K, R + 1, 2) unit tangents at nodes. tied: (R, 2) whether a control point is on that of its start, or end.
-        beyond: (K, R + 1, 2) where tied, what is beyond the node. slack, least: (R + 1,) turns from it as in
+        beyond: (K, R + 1, 2) where tied, what is beyond the node. slack, least, own, reach: (R + 1,) turns from it as in
             :class:`.font_outlines.Given`.
         fixed: (R,) control points that do not move. held: (R,) quadratics of the source.
         owner: (R,) their sections. lo: (R + 1,) samples at which they meet.
@@ -44,6 +44,8 @@ class Quads(NamedTuple):
     beyond: FloatArray
     slack: FloatArray
     least: FloatArray
+    own: FloatArray
+    reach: FloatArray
     tied: BoolArray
     fixed: BoolArray
     held: BoolArray
@@ -57,7 +59,7 @@ def part(q: Quads, a: int, b: int) -> Quads:
     n = b + 1
     return Quads(
         q.c[:, a:b], q.node[:, a:n], q.implied[a:n], q.T[:, a:n], q.beyond[:, a:n], q.slack[a:n], q.least[a:n],
-        q.tied[a:b], q.fixed[a:b], q.held[a:b], q.owner[a:b], q.lo[a:n],
+        q.own[a:n], q.reach[a:n], q.tied[a:b], q.fixed[a:b], q.held[a:b], q.owner[a:b], q.lo[a:n],
     )  # fmt: skip
 
 

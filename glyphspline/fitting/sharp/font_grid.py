@@ -95,9 +95,15 @@ def aimed_at(q: Quads, w: int, s: int, end: int, wanted: float, price: float) ->
 
 
 @compiled
-def is_kink(q: Quads, s: int, turn: float) -> bool:
-    """Whether a turn from what is beyond makes node s a kink that the source has not there."""
-    return turn > q.slack[s] + 1e-9 or turn < CORNER < q.least[s]
+def is_kink(q: Quads, s: int, turn: float, leg: float) -> bool:
+    """Whether a turn from what is beyond makes node s a kink that the source has not there.
+
+    Args:
+        leg: how long the leg is that turns. Where rounding has turned the source, it may turn as that does, beside no
+            longer a leg.
+    """
+    sources = turn <= q.own[s] + 1e-9 and leg <= q.reach[s] + 1e-6
+    return (turn > q.slack[s] + 1e-9 and not sources) or turn < CORNER < q.least[s]
 
 
 @compiled
@@ -106,7 +112,7 @@ def off_tangent(q: Quads, w: int, s: int, x: float, y: float, price: float) -> f
     price."""
     T, beyond = q.T[w, s], q.beyond[w, s]
     off, turn = turn_between(x, y, T[0], T[1]), turn_between(x, y, beyond[0], beyond[1])
-    return price * (0.005 * (off / KINK) ** 2 + (max(turn, off) / KINK if is_kink(q, s, turn) else 0.0))
+    return price * (0.005 * (off / KINK) ** 2 + (max(turn, off) / KINK if is_kink(q, s, turn, length(x, y)) else 0.0))
 
 
 @compiled

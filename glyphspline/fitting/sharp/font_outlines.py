@@ -46,8 +46,8 @@ class Given(NamedTuple):
 
     Attributes:
         cubics: (K, m, 4, 2). line: (m,). joints: of it. slack: (m + 1,) the largest turn of each that is no new kink,
-            least: (m + 1,) its smallest turn in any mix. level: (m + 1,) whether a curve there is to begin or end along
-            a line.
+            least: (m + 1,) its smallest turn in any mix. own: (m + 1,) the largest it has, reach: (2, m + 1) beside
+            handles that long, before and behind. level: (m + 1,) whether a curve there is to begin or end along a line.
         way: (2, K, m + 1, 2) what arrives at joints, and leaves them.
         cuts: (m + 1,) the joints at which runs end: corners, kinks, ends of lines. upright: (m + 1,) those at which it
             has a horizontal or vertical extremum, in all masters.
@@ -60,6 +60,8 @@ class Given(NamedTuple):
     joints: Joints
     slack: FloatArray
     least: FloatArray
+    own: FloatArray
+    reach: FloatArray
     level: BoolArray
     way: FloatArray
     cuts: BoolArray
@@ -82,11 +84,16 @@ def read_contour(
     for w in range(K):
         upright &= set_upright(cubics[w], alone(joints, w))
     slack, least, level = np.full(m + 1, KINK), np.full(m + 1, KINK), np.zeros(m + 1, dtype=np.bool_)
+    own, reach = np.zeros(m + 1), np.full((2, m + 1), np.inf)
     for j in range(m):
         for w in range(K):
             _, _, way[0, w, j, 0], way[0, w, j, 1] = directions(cubics[w], j - 1, NO_HANDLE)
             way[1, w, j, 0], way[1, w, j, 1], _, _ = directions(cubics[w], j, NO_HANDLE)
         before, behind, most, fewest_turn = way[0, :, j], way[1, :, j], 0.0, np.inf
+        for weights in mixes:
+            (ax, ay), (bx, by) = mean(weights, before), mean(weights, behind)
+            own[j] = max(own[j], turn_between(ax, ay, bx, by))
+            reach[0, j], reach[1, j] = min(reach[0, j], length(ax, ay)), min(reach[1, j], length(bx, by))
         straight = not stored.known and is_roundings(cubics, degrees, j) and line[j - 1] + line[j] < 2
         straight = straight and straightened(before, behind, line[j - 1], line[j], MOVED * tolerance)
         for weights in mixes:
@@ -98,6 +105,7 @@ def read_contour(
             for w in range(K if straight else 0):
                 set_unit(before[w], joints.arriving[w, j])
                 set_unit(behind[w], joints.leaving[w, j])
+                upright[j] = upright[j] and (behind[w] == 0.0).any()
             way[0, :, j], way[1, :, j] = joints.arriving[:, j], joints.leaving[:, j]
             continue
         # Only beyond it is a corner still one when both sides have turned a little.
@@ -115,12 +123,13 @@ def read_contour(
                     way[side, w, j, 0], way[side, w, j, 1] = x, y
             set_unit(way[0, w, j], joints.arriving[w, j])
             set_unit(way[1, w, j], joints.leaving[w, j])
-    cuts[m], slack[m], least[m], level[m] = cuts[0], slack[0], least[0], level[0]
+    cuts[m], upright[m], slack[m], least[m], level[m], own[m] = cuts[0], upright[0], slack[0], least[0], level[0], own[0]
+    reach[:, m] = reach[:, 0]
     joints.corner[m], way[:, :, m] = joints.corner[0], way[:, :, 0]
     joints.arriving[:, m], joints.leaving[:, m] = joints.arriving[:, 0], joints.leaving[:, 0]
     outline = mixed(corners, cubics)
     return Given(
-        cubics, line, joints, slack, least, level, way, cuts, upright, stored, mixes, corners, outline
+        cubics, line, joints, slack, least, own, reach, level, way, cuts, upright, stored, mixes, corners, outline
     )  # fmt: skip
 
 

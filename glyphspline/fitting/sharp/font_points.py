@@ -125,7 +125,7 @@ def as_stored(cubics: FloatArray, stored: tuple[FloatArray, BoolArray], stays: B
     return Stored(True, node, control, implied, float(np.sqrt(2) * drift), stays)
 
 
-SLIDES = (1, 3, 6, 10, 15, 21)
+SLIDES = (*range(1, 13), 15, 18, 21, 25, 30, 35)
 """From how many units from the end of a line on it is tried to let a curve begin there."""
 
 ALONG, BESIDE, REACH = np.radians(0.3), 0.4, 40
@@ -142,15 +142,17 @@ def slid(
     the grid may have none in its direction. Each end slides on alone, until it has no kink.
     """
     slides: dict[tuple[int, int], int] = {}
-    best = last = made
+    best, last, ends, before = made, made, list[tuple[int, int]](), source
     kinks = fewest = new_kinks(source, of_points(made[0][0], made[1]))
     for least in SLIDES if len(fewest) else ():
-        ends = kinked_ends(source, kinks, slides)
+        ends = kinked_ends(source, kinks, slides) + (ends if last[2] > tolerance else [])
+        if not ends:
+            break
         slides.update(dict.fromkeys(ends, least))
         cut = with_cut_lines(source, slides)
-        if not ends or cut is None:
-            break
-        last = fit(all_cubics(cut)[None], cut.degrees)
+        if np.array_equal(cut.points, before.points):
+            continue
+        before, last = cut, fit(all_cubics(cut)[None], cut.degrees)
         kinks = new_kinks(source, of_points(last[0][0], last[1]))
         if last[2] <= tolerance and len(kinks) < len(fewest):
             best, fewest = last, kinks
@@ -177,18 +179,19 @@ def kinked_ends(
 ) -> list[tuple[int, int]]:  # fmt: skip
     """The ends of lines, by segment and end, that meet a curve at a kink, where these slid by so many units."""
     cubics, m = all_cubics(source), len(source.degrees)
-    there, found = set(map(tuple, np.rint(kinks).tolist())), []
+    found = []
     for s in np.flatnonzero(source.degrees == 1).tolist():
         for end in range(2):
             beside = (s + 1) % m if end else s - 1
             place = end_of_line(cubics[s], end, slides.get((s, end), 0))
-            if source.degrees[beside] > 1 and tuple(np.rint(place).tolist()) in there:
+            # A short line may end at any place on the grid around its end.
+            if source.degrees[beside] > 1 and (np.abs(kinks - place) < 1.0).all(axis=1).any():
                 found.append((s, end))
     return found
 
 
-def with_cut_lines(source: ContourArrays, slides: Mapping[tuple[int, int], int]) -> ContourArrays | None:
-    """A contour whose lines end earlier, by so many units or more; None if none does."""
+def with_cut_lines(source: ContourArrays, slides: Mapping[tuple[int, int], int]) -> ContourArrays:
+    """A contour whose lines end earlier, by so many units or more."""
     rows: list[FloatArray] = []
     degrees: list[int] = []
     for s, (own, degree) in enumerate(zip(all_cubics(source), source.degrees.tolist(), strict=True)):
@@ -198,9 +201,7 @@ def with_cut_lines(source: ContourArrays, slides: Mapping[tuple[int, int], int])
         rows, degrees = [*rows, own if degree > 1 else straight(first, last)], [*degrees, degree]
         if (last != own[3]).any():
             rows, degrees = [*rows, straight(last, own[3])], [*degrees, 3]
-    return (
-        chains(np.array(rows), np.array(degrees), np.array([0, len(rows)])) if len(rows) > len(source.degrees) else None
-    )
+    return chains(np.array(rows), np.array(degrees), np.array([0, len(rows)]))
 
 
 def end_of_line(line: FloatArray, end: int, least: int) -> FloatArray:
@@ -226,8 +227,8 @@ def _share_of_line(far: FloatArray, end: FloatArray, least: int) -> float | None
             continue
         x, y = np.meshgrid(*(node[k] - end[k] + np.arange(-12.0, 13.0) for k in range(2)))
         x, y = -x, -y
-        u, v = node - far
-        along, across = (u * x + v * y) / size, np.abs(u * y - v * x) / size
+        u, v = (node - far) / np.hypot(*(node - far))
+        along, across = u * x + v * y, np.abs(u * y - v * x)
         if ((along > step) & (along < step + 12.0) & (across < ALONG * along)).any():
             return float(away @ vector) / size**2
     return None

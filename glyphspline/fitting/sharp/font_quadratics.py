@@ -19,14 +19,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import length
+from ...curves.cubics import directions, length
 from ...intrinsics import borrowed, keep_alive
-from ...outlines.segments import farthest_joint
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import turn_between
+from .corners import NO_HANDLE, turn_between
 from .font_chains import Quads, as_cubics, part, relax, set_nodes, set_tangents
 from .font_grid import EXPLICIT, aim, is_kink, round_quads
 from .font_outlines import Given, Stored, is_ring, mean, read_contour, set_unit
+from .harmony import end_jump
 from .nearness import certified
 from .run_gates import CORNER, KINK, mixed
 from .settings import Settings
@@ -70,6 +70,8 @@ def set_ends(q: Quads, given: Given, a: int, b: int, level: bool) -> None:
     joints, R = given.joints, q.c.shape[1]
     q.slack[:], q.slack[0], q.slack[R] = KINK, given.slack[a], given.slack[b]
     q.least[:], q.least[0], q.least[R] = KINK, given.least[a], given.least[b]
+    q.own[:], q.own[0], q.own[R] = 0.0, given.own[a], given.own[b]
+    q.reach[:], q.reach[0], q.reach[R] = 0.0, given.reach[1, a], given.reach[0, b]
     q.T[:, 0], q.T[:, R] = joints.leaving[:, a], joints.arriving[:, b]
     q.beyond[:, 0], q.beyond[:, R] = given.way[0, :, a], given.way[1, :, b]
     if level and given.level[a]:
@@ -167,7 +169,7 @@ def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float, k
     room, R = MOST * (ends[S] - ends[0] + 2 * S) + MORE[-1] * S, 0
     made = Quads(
         np.empty((K, room, 2)), np.empty((K, room + 1, 2)), np.ones(room + 1, np.bool_), np.zeros((K, room + 1, 2)),
-        np.zeros((K, room + 1, 2)), np.full(room + 1, KINK), np.full(room + 1, KINK), np.zeros((room, 2), np.bool_),
+        np.zeros((K, room + 1, 2)), np.full(room + 1, KINK), np.full(room + 1, KINK), np.zeros(room + 1), np.zeros(room + 1), np.zeros((room, 2), np.bool_),
         np.zeros(room, np.bool_), np.zeros(room, np.bool_), np.empty(room, np.int64), np.empty(room + 1, np.int64),
     )  # fmt: skip
     q = borrowed(made)
@@ -266,7 +268,8 @@ def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tup
                 own = turn_between(x, y, ax, ay) if end else turn_between(x, y, bx, by)
                 off = off or share * own > turn_between(ax, ay, bx, by) - CORNER
             else:
-                worse = worse or is_kink(q, s + end, turn_between(x, y, bx, by) if end else turn_between(x, y, ax, ay))
+                turn = turn_between(x, y, bx, by) if end else turn_between(x, y, ax, ay)
+                worse = worse or is_kink(q, s + end, turn, length(x, y))
         bad[s], kinks = bad[s] or off or worse, kinks + worse
     return bad, far.max(), kinks
 
@@ -344,6 +347,22 @@ def fit_run(
 
 
 @compiled
+def evenest_joint(cubics: FloatArray) -> int:
+    """The joint of a contour (m, 4, 2) with long handles, and curvatures that are nearly alike: where a point midway
+    between two control points has both near the outline. Ties go to the rightmost, then the uppermost."""
+    best, most = 0, -1.0
+    for j in range(len(cubics)):
+        ax, ay, _, _ = directions(cubics, j, NO_HANDLE)
+        _, _, bx, by = directions(cubics, j - 1, NO_HANDLE)
+        even = 1.0 - min(end_jump(cubics[j - 1], cubics[j], 1e9), 1.0)
+        score = np.rint(even * min(length(ax, ay), length(bx, by)) * 1e6)
+        x_ahead, y_ahead = cubics[j, 0, 0] - cubics[best, 0, 0], cubics[j, 0, 1] - cubics[best, 0, 1]
+        if score > most or (score == most and (x_ahead > 0 or (x_ahead == 0 and y_ahead > 0))):
+            best, most = j, score
+    return best
+
+
+@compiled
 def put_points(c: FloatArray, node: FloatArray, implied: BoolArray, points: FloatArray, on: BoolArray) -> int:
     """Write what is stored of quadratics; the number of points."""
     at = 0
@@ -381,7 +400,7 @@ def fit_contour(
         if k == m and stored.known:
             return np.empty((K, 0, 2)), np.empty(0, dtype=np.bool_), 0.0
         if k == m:
-            k = farthest_joint(cubics[0, :, 0])
+            k = evenest_joint(cubics[0])
     if k > 0:
         cubics, degrees = np.concatenate((cubics[:, k:], cubics[:, :k]), axis=1), np.roll(degrees, -k)
         node = np.concatenate((stored.node[:, k:], stored.node[:, :k]), axis=1)
