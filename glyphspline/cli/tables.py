@@ -180,7 +180,7 @@ def _distance(each: Difference) -> str:
 
 def _ink(each: Difference) -> str:
     """How much of the ink changed, where the tolerance does not explain it."""
-    return each.ink.share if each.ink is not None and each.ink.depth else ""
+    return "" if each.ink is None else each.ink.share
 
 
 def _changes(gone: int, came: int) -> str:
@@ -204,7 +204,7 @@ def difference_lines(found: FontDifference, shown: int) -> Iterator[str]:
         ("only in the old one", found.glyphs.only_old),
         ("only in the new one", found.glyphs.only_new),
         ("of another name", [f"{old} = {new}" for old, new in found.glyphs.renamed]),
-        ("with other ink", [each.glyph for each in found.beyond if each.ink is not None and each.ink.depth]),
+        ("with other ink", [each.glyph for each in found.beyond if each.ink is not None]),
         ("undecided", [f"{each.glyph} ({each.seen:.4g} to {rounded_up(each.bound, 4):g})" for each in undecided]),
         ("not compared", [f"{each.glyph} ({each.error})" for each in found.unread]),
     ):

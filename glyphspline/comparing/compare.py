@@ -81,8 +81,8 @@ def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, toler
 
 def _distances(mine: ContourArrays, its: ContourArrays, em: float, tolerance: float, snapped: float) -> dict[str, Any]:
     """How far outlines are apart, and how their ink differs; ``snapped``: by how much they may be off themselves."""
-    from .changed_ink import SHARP, ink_difference
-    from .following import follow
+    from .changed_ink import LEAST, SHARP, changed_ink, deepest_point
+    from .following import unfollowed
     from .outline_distance import chains_of, outline_distance
 
     if not (len(mine.degrees) and len(its.degrees)):
@@ -90,11 +90,15 @@ def _distances(mine: ContourArrays, its: ContourArrays, em: float, tolerance: fl
     old, new, limit = chains_of(mine), chains_of(its), tolerance * (1 + EVEN)
     row, nearest = outline_distance(old, new, em / 1000, tolerance - snapped)
     bound, seen, x, y, side, contour, near_x, near_y = row.tolist()
-    bound, seen = bound + snapped, max(seen - snapped, 0.0)
-    explained = bound <= limit and follow(old, new, nearest[: len(old.cubics), :2], limit * (1 + SHARP) - snapped)
-    ink = None if explained or seen > limit else ink_difference(mine, its, limit + snapped, em)
     worst = Apart(SIDES[int(side)], int(contour), (x, y), (near_x, near_y)) if side >= 0 else None
-    return {"bound": bound, "seen": seen, "worst": worst, "ink": ink}
+    found = {"bound": bound + snapped, "seen": max(seen - snapped, 0.0), "worst": worst}
+    if found["seen"] > limit:
+        return found
+    explained, deepest = max(limit, LEAST * em) + snapped, np.zeros(3)
+    boxes = unfollowed(old, new, nearest[: len(old.cubics), :2], explained * (1 + SHARP))
+    known = deepest_point(old, new, boxes, explained, deepest)
+    ink = changed_ink(mine, its, deepest, explained) if deepest[0] > 0 else None
+    return found | {"ink": ink, "ink_known": known or ink is not None}
 
 
 def extents(cubics: FloatArray, offsets: IntArray) -> FloatArray:

@@ -57,22 +57,19 @@ class Ink:
         changed: area of what only one of them fills, in square units. error: by which it may be more or less.
         area, new_area: what each of them fills.
         lost: number of islands and counters that the new one has not, or that it has in one with others. gained: the
-            other way round. Those narrower than two tolerances of the comparison do not count.
-        depth: certified: a point of changed ink is as far as that from both outlines; 0 if none was found that is
-            beyond the tolerance of the comparison. deepest: the point.
-        complete: none is farther than that, or the tolerance, by more than a quarter. Not for outlines in which it
-            would take minutes to tell.
+            other way round. Those narrower than a quarter of the comparison's tolerance do not count.
+        depth: certified: a point of changed ink is as far as that from both outlines, and none is farther by more than
+            a quarter. deepest: the point.
     """
 
     changed: float
     error: float
     area: float
     new_area: float
-    lost: int = 0
-    gained: int = 0
-    depth: float = 0.0
-    deepest: Point | None = None
-    complete: bool = True
+    lost: int
+    gained: int
+    depth: float
+    deepest: Point
 
     @property
     def share(self) -> str:
@@ -98,8 +95,9 @@ class Difference:
         contours_gone: numbers of old contours without a partner in the new outline, but for those that are no wider
             than two tolerances of the comparison. contours_new: and the other way.
         kinks_gone: kinks of the old outline that the new one does not have. kinks_new: and the other way.
-        ink: how the ink differs. None where it was not measured: the outlines are seen beyond the tolerance of the
-            comparison, or contours run beside each other within it, so that it explains what ink changed.
+        ink: how the ink differs, if by more than the tolerance of the comparison explains. None otherwise, and where it
+            was not measured, as the outlines are seen beyond the tolerance. ink_known: whether nothing was left open,
+            for outlines in which it would take minutes to tell.
     """
 
     glyph: str
@@ -119,6 +117,7 @@ class Difference:
     kinks_gone: tuple[Turn, ...] = ()
     kinks_new: tuple[Turn, ...] = ()
     ink: Ink | None = None
+    ink_known: bool = True
 
     @property
     def is_none(self) -> bool:
@@ -138,8 +137,8 @@ class Difference:
         That is for outlines that are not known as closely as the tolerance asks, or that would take minutes; and for
         another tolerance than that of the comparison.
         """
-        open_ink = self.ink is not None and not self.ink.complete
-        return (self.bound > tolerance * (1 + EVEN) or open_ink) and not self.is_beyond(tolerance)
+        certified = self.bound <= tolerance * (1 + EVEN) and self.ink_known
+        return not certified and not self.is_beyond(tolerance)
 
     def facts(self) -> dict[str, Any]:
         """As JSON data; an infinite distance is null."""

@@ -53,20 +53,10 @@ def ink_difference(before: ContourArrays, after: ContourArrays, flatness: float)
     slabs = Slabs(lines, its_lines)
     if not slabs.differ:
         return InkDifference(0.0, 0.0, 0, 0, slabs.length)
-    lost, gained = unmatched(slabs, APART * flatness)
-    return InkDifference(slabs.area, max(bound, its_bound) * slabs.moved_length, lost, gained, slabs.length)
-
-
-def unmatched(slabs: Slabs, apart: float) -> tuple[int, int]:
-    """How many islands and counters each of two outlines has that the other one has not.
-
-    Args:
-        apart: distance of sides that are told apart.
-    """
-    both = [slabs.stretches(which, apart) for which in range(2)]
+    both = [slabs.stretches(which, APART * flatness) for which in range(2)]
     regions = [[each.regions(touching) for each in both] for touching in (True, False)]
     lost, gained = np.max([_unmatched(one, other, slabs.areas) for one, other in regions], axis=0).tolist()
-    return lost, gained
+    return InkDifference(slabs.area, max(bound, its_bound) * slabs.moved_length, lost, gained, slabs.length)
 
 
 def _unmatched(one: Regions, other: Regions, areas: FloatArray) -> tuple[int, int]:

@@ -68,7 +68,7 @@ def marks(each: Difference, em: float, half: float | None = None) -> str:
     found = []
     for kind, turns in (("gone", each.kinks_gone), ("came", each.kinks_new)):
         found += [ring(turn.point, 0.012 * em if half is None else half / 14, f"kink {kind}") for turn in turns]
-    if each.ink is not None and each.ink.deepest is not None:
+    if each.ink is not None:
         found.append(ring(each.ink.deepest, each.ink.depth, "ink"))
     if each.worst is not None:
         (ax, ay), (bx, by) = each.worst.point, each.worst.nearest
@@ -105,7 +105,7 @@ def lines(each: Difference) -> list[tuple[str, str]]:
     found = [("Distance", distance(each.bound))]
     if each.worst is not None:
         found.append(("Worst", f"{each.worst.outline}, contour {each.worst.contour}, {where(each.worst.point)}"))
-    if each.ink is not None and each.ink.deepest is not None:
+    if each.ink is not None:
         deep = f"up to {each.ink.depth:.3g} units from both outlines, at {where(each.ink.deepest)}"
         found.append(("Ink", f"{each.ink.share} changed, {deep}"))
         found += [

@@ -14,6 +14,8 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli.commands import app
+from glyphspline.comparing.changed_ink import deepest_point
+from glyphspline.comparing.outline_distance import chains_of
 from glyphspline.curves.bezier import evaluate
 from glyphspline.types import BoolArray, FloatArray
 from tests.places import DEJAVU
@@ -82,7 +84,7 @@ def test_ink_that_changed_in_the_same_outline(
 )  # fmt: skip
 def test_what_the_tolerance_explains_is_not_beyond(old: list[gs.Contour], new: list[gs.Contour], angle: float) -> None:
     found = compared(old, new, angle)
-    assert found.ink is None or found.ink.depth == 0
+    assert found.ink is None
     assert not found.is_beyond(1.0)
     assert not found.is_undecided(1.0)
 
@@ -115,17 +117,30 @@ def test_a_filled_counter_has_status_1_and_is_named(tmp_path: Path) -> None:
     told = runner.invoke(app, ["diff", ring, disc, "--jobs", "0", "--json"])
     (glyph,) = json.loads(told.stdout)["glyphs"]
     assert list(glyph["ink"]) == [
-        "changed", "error", "area", "new_area", "lost", "gained", "depth", "deepest", "complete",
+        "changed", "error", "area", "new_area", "lost", "gained", "depth", "deepest",
     ]  # fmt: skip
     assert (glyph["beyond_tolerance"], glyph["ink"]["area"], glyph["ink"]["new_area"]) == (True, 57600, 60000)
     assert runner.invoke(app, ["diff", ring, disc, "--jobs", "0", "--tolerance", "21"]).exit_code == 0
 
 
-def test_ink_is_measured_only_where_nothing_else_decides() -> None:
-    assert compared(RING, RING, 0).ink is None
-    assert compared(RING, [box(0.5, 0, 300, 200), RING[1]], 0).ink is None
-    assert compared(RING, [box(1.5, 0, 300, 200), RING[1].reversed()], 0).ink is None
+def test_ink_is_not_measured_beyond_the_tolerance() -> None:
+    filled = [box(1.5, 0, 300, 200), RING[1].reversed()]
+    assert compared(RING, filled, 0).ink is None
     assert compared(RING, [], 0).ink is None
+    found = compared(RING, filled, 0, tolerance=2)
+    assert found.ink is not None
+    assert found.is_beyond(2)
+
+
+def test_a_search_that_would_not_end_is_given_up_and_undecided() -> None:
+    chains, deepest = chains_of(gs.Outline("o", contours=RING).arrays), np.zeros(3)
+    boxes = np.array([[-9.0, -9, 310, 210]])
+    assert deepest_point(chains, chains, boxes, 1.0, deepest)
+    assert not deepest_point(chains, chains, boxes, 1e-4, deepest)
+    assert deepest.tolist() == [0, 0, 0]
+    left_open = replace(compared(RING, RING[::-1], 0), ink_known=False)
+    assert left_open.is_undecided(1.0)
+    assert not left_open.is_beyond(1.0)
 
 
 def polygons(outline: gs.Outline, steps: int = 24) -> list[FloatArray]:

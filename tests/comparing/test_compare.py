@@ -341,7 +341,7 @@ def test_the_json_has_its_names() -> None:
     assert list(glyph) == [
         "beyond_tolerance", "undecided", "glyph", "gid", "new_glyph", "new_gid", "unicodes", "identical", "bound",
         "seen", "worst", "advance", "new_advance", "scale", "contours_gone", "contours_new", "kinks_gone", "kinks_new",
-        "ink",
+        "ink", "ink_known",
     ]  # fmt: skip
     assert list(glyph["worst"]) == ["outline", "contour", "point", "nearest"]
     assert glyph["unicodes"] == ["U+5584"]
