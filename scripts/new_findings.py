@@ -72,19 +72,8 @@ def written(source: Path, way: str, jobs: int) -> Path:
     """The font that a command makes of a face."""
     out = source.parent / f"{source.stem}-{way}"
     if not list(out.glob("*.?tf")):
-        command = [
-            sys.executable,
-            "-m",
-            "glyphspline",
-            *WAYS[way],
-            str(source),
-            "--out",
-            str(out),
-            "-j",
-            str(jobs),
-            "-q",
-        ]
-        run = subprocess.run([sys.executable, *command], check=False)
+        command = [*WAYS[way], str(source), "--out", str(out), "-j", str(jobs), "-q"]
+        run = subprocess.run([sys.executable, "-m", "glyphspline", *command], check=False)
         assert run.returncode in (0, 1), command
     (made,) = out.glob("*.?tf")
     return made

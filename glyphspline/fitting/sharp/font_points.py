@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ...checks.segments import CONTOUR, WHAT
+from ...checks.segments import CONTOUR, PLACE, WHAT
+from ...curves.bezier import evaluate
 from ...curves.cubics import turns
 from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ...outlines.masters import quadratics
@@ -14,7 +15,7 @@ from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
 from ..options import Options
 from .corners import NO_HANDLE
-from .font_fit import ONE, TURNING, chains, findings
+from .font_fit import ONE, chains, findings
 from .font_outlines import Stored
 from .font_quadratics import fit_contour as fit_quadratics
 from .run_gates import CORNER
@@ -24,6 +25,9 @@ from .settings import EFFORTS, LONG_LINE
 Made = tuple[FloatArray, BoolArray, float]
 """Points (K, n, 2) of a contour in K masters, whether each is on the curve, and a bound of their distance from the
 source."""
+
+SAME = 0.005
+"""Of an em, within which two findings of a kind are one."""
 
 DENSER = 4.0
 """How much finer a source of cubics is sampled: what follows it has more quadratics, each with samples inside."""
@@ -270,10 +274,18 @@ def begun_as(points: FloatArray, on: BoolArray, stored: tuple[FloatArray, BoolAr
 
 
 def more_findings(source: ContourArrays, made: ContourArrays, em: float) -> BoolArray:
-    """(C,) whether a check finds more of a kind in contours than in those of which they were made."""
-    kinds = TURNING + 1
-    before, after = (
-        np.bincount((kinds * each[:, CONTOUR] + each[:, WHAT]).astype(np.int64), minlength=kinds * source.num_contours)
-        for each in (findings(source, em), findings(made, em))
-    )
-    return np.any((after > before).reshape(-1, kinds), axis=1)
+    """(C,) whether a check finds in contours what it does not find near there in those of which they were made."""
+    worse = np.zeros(source.num_contours, dtype=np.bool_)
+    (old, there), (new, here) = (placed_findings(each, em) for each in (source, made))
+    for row, point in zip(new, here, strict=True):
+        alike = (old[:, CONTOUR] == row[CONTOUR]) & (old[:, WHAT] == row[WHAT])
+        worse[int(row[CONTOUR])] |= not (np.abs(there[alike] - point).max(axis=1) <= SAME * em).any()
+    return worse
+
+
+def placed_findings(contours: ContourArrays, em: float) -> tuple[FloatArray, FloatArray]:
+    """What :func:`.font_fit.findings` finds, and (n, 2) where."""
+    found = findings(contours, em)
+    segments = np.floor(found[:, PLACE]).astype(np.int64)
+    cubics = all_cubics(contours)[contours.offsets[found[:, CONTOUR].astype(np.int64)] + segments]
+    return found, evaluate(cubics, found[:, PLACE] - segments)
