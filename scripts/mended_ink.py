@@ -26,6 +26,7 @@ from scipy.ndimage import label
 from glyphspline.checks.check import check_many
 from glyphspline.checks.kinds import MENDED
 from glyphspline.curves.bezier import evaluate
+from glyphspline.mending.ink import INK
 from glyphspline.readers import Font, open_source
 from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.jobs.mend import MendedSource, mend_source
@@ -166,7 +167,7 @@ def rows(path: Path, given: Any) -> Iterator[list[object]]:
                     print(path.name, kinds, name, ink.area / em, ink.islands, ink.counters, flush=True)
                 if given.pictures and (ink.differs or number < 10):
                     ink.save(Path(given.pictures) / f"{path.stem}-{'-'.join(kinds[:2])}-{name}.png")
-        left = sum("ink" in (change.why or "") for change in found.left)
+        left = sum((change.why or "").startswith(INK) for change in found.left)
         yield [
             path.stem, ", ".join(kinds) if len(kinds) < len(MENDED) else "all", len(found.changed), len(found.mended),
             left, len(changed) - len(found.changed), len(wrong), f"{worst:.2f}", dict(new) or "",
