@@ -120,6 +120,38 @@ def test_a_part_that_overlaps_is_not_hidden_unless_all_of_it_is() -> None:
     assert sorted(kinds(stem, box(-60, 100, 160, 30, -1))) == [("direction", 1, None), ("overlap", 0, 1)]
 
 
+CROSS = [box(290, 380, 40, 320), box(290, 60, 40, 320), box(0, 360, 310, 40), box(310, 360, 310, 40)]
+"""Four parts that abut in the middle."""
+
+
+@pytest.mark.parametrize(
+    "patched",
+    [
+        pytest.param([*CROSS, box(280, 350, 60, 60)], id="over the joint, beyond it"),
+        pytest.param([*CROSS, box(300, 370, 20, 20)], id="inside the joint"),
+        pytest.param([*CROSS, disc(310, 380, 30)], id="round"),
+        pytest.param([box(0, 0, 40, 300), box(-60, 100, 160, 30), box(5, 105, 30, 20)], id="where two overlap"),
+        pytest.param([box(0, 0, 100, 50), box(100, 0, 100, 50), box(80, 10, 40, 30)], id="over a seam"),
+        pytest.param([disc(0, 0, 100), disc(120, 0, 100), box(20, -20, 80, 40)], id="across a lens"),
+    ],
+)
+def test_a_patch_over_a_joint_of_others_has_no_direction(patched: list[Contour]) -> None:
+    assert "direction" not in {kind for kind, _, _ in kinds(*patched)}
+
+
+def test_a_contour_inside_two_others_has_ink_on_both_sides_whichever_way_it_runs() -> None:
+    around = [box(0, 0, 300, 300), box(20, 20, 260, 260)]
+    for turn in (1, -1):
+        directions = [item for item in found(*around, box(100, 100, 50, 50, turn)) if item.kind == "direction"]
+        assert [(item.contour, item.other) for item in directions] == [(1, 0)]
+
+
+def test_a_contour_that_runs_both_ways_has_no_direction() -> None:
+    eight = polygon([(0, 0), (300, 320), (300, 0), (0, 300)])
+    others = [box(400, 0, 90, 90), box(500, 0, 90, 90)]
+    assert [kind for kind, _, _ in kinds(eight, *others)] == ["crossing"]
+
+
 def test_the_box_of_a_contour_around_another_does_not_make_it_a_counter() -> None:
     corner = polygon([(0, 0), (100, 0), (100, 10), (10, 10), (10, 100), (0, 100)])
     assert kinds(corner, disc(60, 60, 20)) == []
