@@ -434,4 +434,6 @@ def fit_contour(
                 set_unit(way[1, w, m], joints.leaving[w, m])
                 set_unit(way[0, w, j], joints.arriving[w, j])
         i = j
-    return points[:, :count], on[:count], reached
+    # What is on the grid but for rounding errors is on it: a writer may cut decimals off.
+    points, whole = points[:, :count], np.rint(points[:, :count])
+    return np.where(np.abs(points - whole) < 1e-6, whole, points), on[:count], reached

@@ -219,7 +219,7 @@ def in_quadratics(
     if distance > tolerance:
         step = max(tolerance - ROUNDING, SHARE * tolerance / 2)
         return cut_alone(contours, step, name), ROUNDING + step
-    points = np.concatenate([np.empty((0, 2)), *(points for points, _ in found)]).astype(np.int64)
+    points = np.rint(np.concatenate([np.empty((0, 2)), *(points for points, _ in found)])).astype(np.int64)
     check_size(points.tolist(), name)
     on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in found)])
     return simple_glyph(points, on, (np.cumsum([len(on) for _, on in found]) - 1).tolist(), False), distance
