@@ -59,13 +59,16 @@ def compare(old: Outline, new: Outline, tolerance: float | None = None) -> Diffe
 def _changed(old: Outline, new: Outline, its: ContourArrays, scale: float, tolerance: float | None) -> dict[str, Any]:
     """How outlines differ whose contours are not the same; ``its``: the contours of the new one, scaled."""
     from ..outlines.segments import all_cubics  # here, so that the package opens without a compiler
-    from .outline_distance import outline_distance
+    from .outline_distance import chains_of, outline_distance
 
     mine, em = old.arrays, old.metrics.units_per_em
     far = np.max([np.abs(contours.points).max(initial=0.0) for contours in (mine, its)])
     if not far < em * PER_EM / ROUNDING:
         raise GlyphsplineError(f"coordinates up to {far:.3g} are too large to be compared", glyph=old.name)
-    bound, seen, x, y, side, contour, near_x, near_y = outline_distance(mine, its, em / 1000).tolist()
+    row = np.array([np.inf, np.inf, 0, 0, -1, -1, 0, 0])
+    if len(mine.degrees) and len(its.degrees):
+        row = outline_distance(chains_of(mine), chains_of(its), em / 1000, -np.inf)
+    bound, seen, x, y, side, contour, near_x, near_y = row.tolist()
     bound += old.snapped + scale * new.snapped
     hulls, other_hulls = (extents(all_cubics(contours), contours.offsets) for contours in (mine, its))
     # Share of the em by which the extents of two contours may differ that are partners.

@@ -8,7 +8,8 @@ gives a bound, so the least of these is taken.
 
 Points whose nearest point is known give the distance *seen*, from below: ends of segments first, then middles of
 sections that are halved. The section with the largest bound is halved first. A section is done when its bound exceeds
-the largest distance seen by no more than is asked.
+the largest distance seen by no more than is asked. While nothing is seen beyond the tolerance, it is not done before
+its bound is within.
 
 The nearest point is sought on all contours, and none is missed. A stretch of a cubic over [a, b] is within
 ``bend (b - a)²`` of its chord at equal parameters, where ``bend`` is 3/4 of the largest second difference of its Bézier
@@ -72,8 +73,9 @@ class Chains(NamedTuple):
     groups: FloatArray
 
 
-def chains_of(cubics: FloatArray, offsets: IntArray) -> Chains:
-    """The chains of an outline with segments (m, 4, 2) and offsets (C + 1,)."""
+def chains_of(contours: ContourArrays) -> Chains:
+    """The chains of an outline that is not empty."""
+    cubics, offsets = all_cubics(contours), contours.offsets
     boxes = np.concatenate([cubics.min(axis=1), cubics.max(axis=1)], axis=1)
     starts = np.arange(0, len(cubics), GROUP)
     low, high = np.minimum.reduceat(boxes[:, :2], starts), np.maximum.reduceat(boxes[:, 2:], starts)
@@ -177,26 +179,38 @@ def nearest_of_outline(
     return segment, at, best
 
 
-def outline_distance(old: ContourArrays, new: ContourArrays, unit: float) -> FloatArray:
-    """(COLUMNS,) the distance of two outlines; ``unit``: a thousandth of the em."""
+def outline_distance(old: Chains, new: Chains, unit: float, tolerance: float) -> FloatArray:
+    """(COLUMNS,) the distance of two outlines.
+
+    Args:
+        unit: a thousandth of the em. tolerance: which the bound is to be below, or the distance seen above.
+    """
     row = np.zeros(COLUMNS)
     row[SIDE] = row[CONTOUR] = -1
-    if len(old.degrees) and len(new.degrees):
-        one, other = (chains_of(all_cubics(outline), outline.offsets) for outline in (old, new))
-        distance(one, other, SHARP * unit, row)
-    elif len(old.degrees) or len(new.degrees):
-        row[BOUND] = row[SEEN] = np.inf
+    distance(old, new, SHARP * unit, tolerance, row)
     return row
 
 
+@inlined
+def enough(seen: float, least: float, tolerance: float) -> float:
+    """The bound up to which a section is not halved."""
+    limit = seen + max(least, SHARP * seen)
+    return limit if seen > tolerance else min(limit, tolerance)
+
+
 @compiled
-def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
-    """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distance`."""
+def distance(old: Chains, new: Chains, least: float, tolerance: float, row: FloatArray) -> None:
+    """The distance of two outlines, into a row of COLUMNS; see :func:`outline_distance`.
+
+    Args:
+        least: the bound need not exceed the distance seen by less than this, but where the tolerance is between them.
+    """
     places, sections, marks = np.empty((STACK, 2)), np.empty((2, 1, 4, 2)), np.empty((DEEPEST + 2, 7))
     m, n = len(old.cubics), len(new.cubics)
     # Of every segment: the bound; and the segment of the other outline, and parameter on it, nearest to both its ends.
     bounds, ends = np.empty(m + n), np.empty((m + n, 4))
-    slack = SLACK * least
+    rounding = ROUNDING * max(extent(old.cubics), extent(new.cubics))
+    slack, tolerance = SLACK * least, tolerance - rounding
     for side in range(2):
         one, other, first = (old, new, 0) if side == 0 else (new, old, m)
         s, z = 0, 0.5
@@ -213,7 +227,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             for i in range(start, last + 1):
                 j = i + 1 if i < last else start
                 ends[first + i, 2], ends[first + i, 3] = ends[first + j, 0], ends[first + j, 1]
-        limit = row[SEEN] + max(least, SHARP * row[SEEN])
+        limit = enough(row[SEEN], least, tolerance)
         for i in range(len(one.cubics)):
             e = ends[first + i]
             bounds[first + i] = section_bound(
@@ -223,7 +237,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
     order = ascending(-bounds)
     for k in range(m + n):
         at = order[k]
-        if bounds[at] <= row[SEEN] + max(least, SHARP * row[SEEN]):
+        if bounds[at] <= enough(row[SEEN], least, tolerance):
             bound = max(bound, bounds[at])
             break
         side = 0 if at < m else 1
@@ -233,7 +247,7 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             marks[0, 2 + q] = ends[at, q]
         top = 0
         while top >= 0:
-            limit = max(bound, row[SEEN] + max(least, SHARP * row[SEEN]))
+            limit = max(bound, enough(row[SEEN], least, tolerance))
             low, high, own = marks[top, 0], marks[top, 1], marks[top, 6]
             if own <= limit or top >= DEEPEST or halvings >= MOST_HALVINGS:
                 bound = max(bound, own)
@@ -247,14 +261,14 @@ def distance(old: Chains, new: Chains, least: float, row: FloatArray) -> None:
             if d > row[SEEN]:
                 row[SEEN], row[X], row[Y], row[SIDE], row[CONTOUR] = d, x, y, side, one.owners[i]
                 row[NEAR_X], row[NEAR_Y], _, _, _, _ = jet(other.cubics, s, z)
-                limit = max(bound, d + max(least, SHARP * d))
+                limit = max(bound, enough(d, least, tolerance))
             marks[top, 1], marks[top, 4], marks[top, 5] = middle, s, z
             marks[top, 6] = section_bound(one.cubics, i, low, middle, other, s0, z0, s, z, limit, sections)
             top += 1
             marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = middle, high, s, z
             marks[top, 4], marks[top, 5] = s1, z1
             marks[top, 6] = section_bound(one.cubics, i, middle, high, other, s, z, s1, z1, limit, sections)
-    row[BOUND] = max(bound, row[SEEN]) + ROUNDING * max(extent(old.cubics), extent(new.cubics))
+    row[BOUND] = max(bound, row[SEEN]) + rounding
 
 
 @compiled

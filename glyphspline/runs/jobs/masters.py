@@ -35,7 +35,20 @@ from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
 from ..engine import Job, Observer, reason
-from ..folder import Done, Output, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
+from ..folder import (
+    Done,
+    Output,
+    Record,
+    Task,
+    conclude,
+    done,
+    entries_of,
+    locked,
+    prepare,
+    read_record,
+    recorded,
+    recorded_lines,
+)
 from ..result_text import stored
 from ..schedule import Place, place_of, sources
 from ..spec import RESULTS, RunSpec, describe, write_run
@@ -191,7 +204,9 @@ def convert_font_masters(
         for name in spec.folders:
             remove_partials(out / name)
         written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
-        conclude(out, record, summary, GALLERY in spec.formats, changed=partial(_with_written, *written))
+        conclude(out, record, GALLERY in spec.formats, changed=partial(_with_written, *written))
+        for entry in entries_of(out):
+            summary.add(entry)
     summary.seconds = time.perf_counter() - began
     return summary
 
