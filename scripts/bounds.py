@@ -52,6 +52,8 @@ FACES = (
     Face("Noto Serif CJK", "NotoSerifCJK-Regular.ttc", 2000),
 )
 
+HEADINGS = ("face", "format", "glyphs", "without a bound", "largest bound", "beyond it", "seconds")
+
 SINGLE = 2.0**-22
 """Share of the em by which a source's decimals may be read otherwise: HarfBuzz has single precision."""
 
@@ -85,19 +87,17 @@ def written(path: Path, kind: str, folder: Path, jobs: int) -> tuple[list[Glyph]
     convert_font(source, source.glyph_names, folder, RunSpec(gs.Options(**FOR_FONTS), (kind,)), jobs=jobs)
     seconds = time.perf_counter() - began
     (made,) = folder.glob(f"*.{kind}")
-    old, new = TTFont(path), TTFont(made)
-    em, sets = old["head"].unitsPerEm, (old.getGlyphSet(), new.getGlyphSet())
+    fonts = TTFont(path), TTFont(made)
+    em, drawn = fonts[0]["head"].unitsPerEm, [(font, font.getGlyphSet()) for font in fonts]
     found = []
     for line in (folder / "manifest.jsonl").read_text(encoding="utf-8").splitlines():
         entry = json.loads(line)
-        facts = entry["stored"][kind]
+        name, facts = entry["glyph"], entry["stored"][kind]
         bound = facts["bound"] if facts else None
-        outlines = [
-            cubics(glyphs, font.getGlyphName(entry["gid"])) for glyphs, font in zip(sets, (old, new), strict=True)
-        ]
+        old, new = (cubics(font, glyphs, font.getGlyphName(entry["gid"])) for font, glyphs in drawn)
         least = 0.0 if bound is None else bound + SINGLE * em
-        seen = farthest(*outlines, em, least)
-        found.append(Glyph(entry["glyph"], bound, seen if bound is not None and seen > least else None))
+        seen = farthest(old, new, em, least)
+        found.append(Glyph(name, bound, seen if bound is not None and seen > least else None))
     return found, seconds
 
 
@@ -128,7 +128,7 @@ def main() -> int:
     if not rows:
         print("none of the faces is installed", file=sys.stderr)
         return 2
-    print(table("face,format,glyphs,without a bound,largest bound,beyond it,seconds".split(","), rows))
+    print(table(HEADINGS, rows))
     return int(wrong > 0)
 
 

@@ -8,12 +8,12 @@ is measured once more, against all segments of the other outline.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from fontTools.pens.basePen import BasePen
+from fontTools.ttLib import TTFont
 from scipy.spatial import cKDTree
 
 Floats: TypeAlias = npt.NDArray[np.float64]
@@ -22,7 +22,7 @@ SPACING, FEWEST = 2e-3, 8
 """Of the em: distance of samples along a curve, at most. Parts of a segment, at least."""
 
 NEAREST, GOLDEN, STEPS = 4, (np.sqrt(5) - 1) / 2, 40
-"""Samples near which the nearest point is sought; share that a golden section leaves; and how many sections there are."""
+"""Samples near which the nearest point is sought; the share that a golden section leaves; and the number of these."""
 
 TOP, BETWEEN = 8, 16
 """Farthest samples around which there are more, and how many of these."""
@@ -52,11 +52,14 @@ class Cubics(BasePen):  # type: ignore[misc, unused-ignore]
     _endPath = _closePath  # noqa: N815
 
 
-def cubics(glyphs: Any, name: str) -> Floats:
-    """(n, 4, 2) the segments of a glyph of fontTools' glyph set."""
+def cubics(font: TTFont, glyphs: Any, name: str) -> Floats:
+    """(n, 4, 2) the segments of a glyph of a font and of its glyph set, where rasterisers draw them."""
     pen = Cubics(glyphs)
     glyphs[name].draw(pen)
-    return np.array(pen.found, dtype=np.float64).reshape(-1, 4, 2)
+    found = np.array(pen.found, dtype=np.float64).reshape(-1, 4, 2)
+    if "glyf" in font and font["glyf"][name].isComposite():  # glyph sets place simple glyphs by their side bearings
+        found[..., 0] += font["hmtx"][name][1] - font["glyf"][name].xMin
+    return found
 
 
 class Samples(NamedTuple):

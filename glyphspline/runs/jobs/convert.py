@@ -336,7 +336,7 @@ def _write_ufo(
 
     def each() -> Iterator[GlyphResult]:
         for result in glyphs:
-            tolerance = result.options.tolerance_for(source.metrics.units_per_em)
+            tolerance = spec.options.tolerance_for(result.outline.metrics.units_per_em)
             promises.update({result.outline.name: promise} if (promise := Promise.of(result, tolerance)) else {})
             yield result
 

@@ -32,15 +32,15 @@ from ...readers import Font, Source
 from ...readers.source import reason, reusing
 from ..read_back import Held, Promise, held
 from .font_glyphs import (
+    GRID,
     Drawn,
     Flavour,
     decomposed,
     drawn_outline,
     drawn_result,
     drop_endless,
-    enlarges,
-    parts_of,
     put_string,
+    scales,
     stays,
     users,
 )
@@ -139,7 +139,10 @@ def to_font(
 
 
 def measured(source: Source, data: bytes, promises: Mapping[int, Promise], followed: Sequence[int]) -> Held:
-    """What a font's bytes hold of what was promised, by index; ``followed``: composites that have other components now."""
+    """What a font's bytes hold of what was promised, by index.
+
+    Composites of ``followed``, which are drawn with other components than before, are promised as much.
+    """
     if not promises:
         return Held({}, ())
     allowed = max(each.tolerance for each in promises.values())
@@ -199,10 +202,7 @@ class _InPlace:
         glyf = self.font["glyf"]
         touched = [name for name in users(self.font, self.new) if name not in self.new]
         counted = placed_by_points(self.font) if self.is_g2 else {}
-        whole = [
-            name for name in touched
-            if not self.is_g2 or enlarges(self.font, name) or not counted.keys().isdisjoint(parts_of(self.font, name))
-        ]  # fmt: skip
+        whole = [name for name in touched if not self.is_g2 or not self._follows(name, counted)]
         self.new |= {name: decomposed(glyf, name) for name in whole}
         lefts = {name: glyf[name].xMin for name in touched if name not in self.new}
         for name in self.names:
@@ -215,6 +215,11 @@ class _InPlace:
             glyf[name].recalcBounds(glyf)
             metrics[name] = (metrics[name][0], metrics[name][1] + glyf[name].xMin - left)
         return [self.font.getGlyphID(name) for name in lefts]
+
+    def _follows(self, name: str, counted: Mapping[str, str]) -> bool:
+        """Whether a composite keeps its components: none is drawn larger than it is, nor placed by points."""
+        parts = scales(self.font, name)
+        return max(parts.values()) <= 1 + GRID and counted.keys().isdisjoint(parts)
 
 
 def saved(font: TTFont) -> bytes:

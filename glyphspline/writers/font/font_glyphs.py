@@ -88,7 +88,9 @@ def drawn_result(
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
     deviation = max((value for value in measured if value is not None), default=0.0)
-    room = max(tolerance - deviation, 0.0) if known else math.inf
+    # Measured are curves as they are rounded to the precision, which are not what is stored.
+    rounding = 0.0 if g2 else ROUNDING * 10.0**-result.options.precision
+    room = max(tolerance - deviation - rounding, 0.0) if known else math.inf
     if flavour == "ttf" and g2:
         as_is = (outline.arrays.degrees < 3).all()
         contours = list(outline.contours) if as_is else oriented(outline.contours, flavour)
@@ -313,12 +315,19 @@ def put_string(strings: Any, name: str, new: Any) -> None:
         strings[name] = new
 
 
-def enlarges(font: TTFont, name: str) -> bool:
-    """Whether a glyph of ``glyf`` draws a component, at any depth, larger than it is: and so its distances."""
-    glyf = font["glyf"]
-    parts = [part for each in below(font, name) if glyf[each].isComposite() for part in glyf[each].components]
-    scales = [part.transform for part in parts if hasattr(part, "transform")]
-    return bool(scales) and float(np.linalg.norm(np.array(scales), ord=2, axis=(1, 2)).max()) > 1 + GRID
+def scales(font: TTFont, name: str) -> dict[str, float]:
+    """The simple glyphs that a glyph of ``glyf`` is made of, and how much each, and its distances, are enlarged."""
+    found, waiting = dict[str, float](), [(name, 1.0)]
+    while waiting:
+        name, scale = waiting.pop()
+        glyph = font["glyf"][name]
+        if not glyph.isComposite():
+            found[name] = max(found.get(name, 0.0), scale)
+            continue
+        for part in glyph.components:
+            own = float(np.linalg.norm(part.transform, ord=2)) if hasattr(part, "transform") else 1.0
+            waiting.append((part.glyphName, scale * own))
+    return found
 
 
 def parts_of(font: TTFont, name: str) -> list[str]:
