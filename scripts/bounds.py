@@ -52,17 +52,32 @@ FACES = (
     Face("Noto Serif CJK", "NotoSerifCJK-Regular.ttc", 2000),
 )
 
-HEADINGS = ("face", "format", "glyphs", "without a bound", "largest bound", "beyond it", "seconds")
+HEADINGS = (
+    "face",
+    "format",
+    "glyphs",
+    "no bound",
+    "largest bound",
+    "beyond the tolerance",
+    "beyond the bound",
+    "seconds",
+)
 
 SINGLE = 2.0**-22
 """Share of the em by which a source's decimals may be read otherwise: HarfBuzz has single precision."""
 
 
 class Glyph(NamedTuple):
-    """A glyph of a written font: its bound, and a distance seen that is larger; None if there is none."""
+    """A glyph of a written font.
+
+    Attributes:
+        bound: None if the manifest has none. within: whether it is within the tolerance, as is said there.
+        seen: a distance seen that is larger than the bound; None if there is none.
+    """
 
     name: str
     bound: float | None
+    within: bool
     seen: float | None
 
 
@@ -93,11 +108,11 @@ def written(path: Path, kind: str, folder: Path, jobs: int) -> tuple[list[Glyph]
     for line in (folder / "manifest.jsonl").read_text(encoding="utf-8").splitlines():
         entry = json.loads(line)
         name, facts = entry["glyph"], entry["stored"][kind]
-        bound = facts["bound"] if facts else None
+        bound, within = (facts["bound"], facts["within_tolerance"]) if facts else (None, True)
         old, new = (cubics(font, glyphs, font.getGlyphName(entry["gid"])) for font, glyphs in drawn)
         least = 0.0 if bound is None else bound + SINGLE * em
         seen = farthest(old, new, em, least)
-        found.append(Glyph(name, bound, seen if bound is not None and seen > least else None))
+        found.append(Glyph(name, bound, within, seen if bound is not None and seen > least else None))
     return found, seconds
 
 

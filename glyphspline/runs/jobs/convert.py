@@ -344,8 +344,10 @@ def _write_ufo(
         remarks = back_to_source(source, each(), spec, path)
     else:
         remarks = [f"{path.name}: {write_ufo(source, each(), path)} glyphs"]
-    found = read_back(path or source.path, promises, None if path else spec.layer)
-    return [remarks[0] + "".join(found.words), *remarks[1:]], found
+    path, layer = path or source.path, None if path else spec.layer
+    found = read_back(path, promises, layer)
+    near, far = found.words
+    return remarks + [f"{path.name}, as read back{near}{far}"] * bool(near), found
 
 
 def read_back(path: Path, promises: Mapping[str, Promise], layer: str | None) -> Held:

@@ -315,18 +315,30 @@ def put_string(strings: Any, name: str, new: Any) -> None:
         strings[name] = new
 
 
-def scales(font: TTFont, name: str) -> dict[str, float]:
-    """The simple glyphs that a glyph of ``glyf`` is made of, and how much each, and its distances, are enlarged."""
-    found, waiting = dict[str, float](), [(name, 1.0)]
-    while waiting:
-        name, scale = waiting.pop()
-        glyph = font["glyf"][name]
-        if not glyph.isComposite():
-            found[name] = max(found.get(name, 0.0), scale)
-            continue
-        for part in glyph.components:
-            own = float(np.linalg.norm(part.transform, ord=2)) if hasattr(part, "transform") else 1.0
-            waiting.append((part.glyphName, scale * own))
+def scales(font: TTFont, name: str, known: dict[str, dict[str, float]] | None = None) -> dict[str, float]:
+    """The simple glyphs that a glyph of ``glyf`` is made of, and how much each, and its distances, are enlarged.
+
+    Args:
+        known: of glyphs that were asked for before, and now of this one.
+    """
+    known, glyph, found = {} if known is None else known, font["glyf"][name], dict[str, float]()
+    if name in known:
+        return known[name]
+    for part in glyph.components if glyph.isComposite() else ():
+        own = float(np.linalg.norm(part.transform, ord=2)) if hasattr(part, "transform") else 1.0
+        for each, scale in scales(font, part.glyphName, known).items():
+            found[each] = max(found.get(each, 0.0), own * scale)
+    known[name] = found if glyph.isComposite() else {name: 1.0}
+    return known[name]
+
+
+def enlarged(font: TTFont) -> dict[str, float]:
+    """How much simple glyphs of ``glyf`` are enlarged at most by composites, of those that are."""
+    found, known = dict[str, float](), dict[str, dict[str, float]]()
+    for name in font.getGlyphOrder():
+        if font["glyf"].glyphs[name].isComposite():  # others are not read
+            parts = scales(font, name, known).items()
+            found |= {part: max(scale, found.get(part, 1.0)) for part, scale in parts if scale > 1}
     return found
 
 

@@ -24,7 +24,7 @@ from ...errors import GlyphsplineError
 from ...outlines.masters import Masters, quadratics
 from ...readers.pens import ContourPen
 from ...types import FloatArray
-from .font_glyphs import parts_of, simple_glyph, users
+from .font_glyphs import enlarged, parts_of, simple_glyph, users
 from .master_deltas import (
     Redrawn,
     StoredGlyph,
@@ -50,10 +50,14 @@ class Quadratics:
         self._font, self._glyf = font, font["glyf"]
         self._gvar = Gvar(font)
         self._new: dict[str, Glyph] = {}
-        self._counted = placed_by_points(font)
+        self._counted, self._enlarged = placed_by_points(font), enlarged(font)
+
+    def share(self, name: str) -> float:
+        """The share of the tolerance that a glyph has, so that composites have no more than all of it."""
+        return 1 / self._enlarged.get(name, 1.0)
 
     def replace(self, name: str, redrawn: Redrawn, tolerance: float) -> StoredGlyph:
-        """Replace a glyph.
+        """Replace a glyph, within its share of the tolerance.
 
         Raises:
             GlyphsplineError: a coordinate does not fit, or a region of its variations is not one of the masters'.
@@ -71,7 +75,7 @@ class Quadratics:
         compared, wanted = bool(redrawn.bounds), redrawn.bounds or (0.0,) * len(redrawn.contours)
         owns = own_contours(record) if compared else {}
         if redrawn.tally is None:
-            redrawn = in_quadratics(redrawn, owns, shift, tolerance)
+            redrawn = in_quadratics(redrawn, owns, shift, self.share(name) * tolerance)
         kept = {
             c: owns[number]
             for c, (number, contour) in enumerate(zip(redrawn.numbers, redrawn.contours, strict=True))
