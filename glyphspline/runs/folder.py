@@ -371,5 +371,8 @@ def is_stated(out: Path) -> bool:
 
 def unstated(line: bytes) -> bytes:
     """A line of a manifest that does not say it."""
+    if f'"{STORED}"'.encode() not in line:
+        return line
     entry = json.loads(line)
-    return f"{encoded(entry)}\n".encode() if entry.pop(STORED, None) is not None else line
+    entry.pop(STORED, None)
+    return f"{encoded(entry)}\n".encode()
