@@ -5,7 +5,7 @@ BIN := .venv/bin
 unexport PYTHONDONTWRITEBYTECODE
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv demo test test-extras test-browser test-package wheel docs lint fuzz check-reference check-topology check-starts bench paper clean
+.PHONY: venv demo test test-extras test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-starts bench paper clean
 .NOTPARALLEL:
 
 # The package alone.
@@ -60,6 +60,11 @@ check-reference: .venv/.ready
 # sources do not, and are not flagged for: seven minutes or so.
 check-topology: .venv/.ready
 	$(BIN)/python -m scripts.topology
+
+# Whether glyphs of eight installed faces, written in both formats, are within the bounds that the manifest has of them:
+# half an hour or so of two free cores.
+check-bounds: .venv/.test
+	$(BIN)/python -m scripts.bounds
 
 # 2000 starts of a command, 500 of them under load, and in 100 more a process is killed: an hour of two free cores.
 check-starts: .venv/.ready

@@ -22,7 +22,7 @@ BASE = {"arrays", "compiled", "errors", "extras", "fields", "files", "intrinsics
 CURVES = BASE | {"curves"}
 FITTING = CURVES | {"interpolation", "outlines", "checks", "fitting"}
 CHECKS = CURVES | {"outlines", "checks"}
-WRITERS = FITTING | {"readers", "typesetting", "writers"}
+WRITERS = FITTING | {"readers", "typesetting", "comparing", "writers"}
 PLAN = {
     "_version": set(),
     "compiled": {"files"},
@@ -44,12 +44,12 @@ PLAN = {
     "readers": CURVES | {"outlines", "matching"},
     "typesetting": FITTING | {"readers"},
     "writers": WRITERS,
-    "report": WRITERS | {"comparing", "mending"},
-    "runs": WRITERS | {"matching", "comparing", "mending", "report"},
+    "report": WRITERS | {"mending"},
+    "runs": WRITERS | {"matching", "mending", "report"},
     "datasets": WRITERS | {"report", "runs"},
     "viewer": WRITERS | {"report"},
     "notebook": WRITERS,
-    "cli": WRITERS | {"comparing", "mending", "report", "runs", "datasets", "viewer"},
+    "cli": WRITERS | {"mending", "report", "runs", "datasets", "viewer"},
     "fontspector": WRITERS | {"runs", "cli"},
     "__main__": {"cli"},
 }

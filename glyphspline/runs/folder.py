@@ -21,6 +21,7 @@ from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import islice
 from pathlib import Path
 from typing import Any, BinaryIO, NamedTuple
 
@@ -34,7 +35,6 @@ from ..types import Head
 from .engine import Job, Observer, Part, run
 from .rows import Rows, remove_unfinished
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
-from .summary import MastersSummary, Summary
 
 LOCK = ".lock"
 MANIFEST = "manifest.jsonl"
@@ -329,14 +329,8 @@ def recorded(
             yield part
 
 
-def conclude(
-    out: Path,
-    record: Record,
-    summary: Summary | MastersSummary,
-    with_gallery: bool = False,
-    changed: Callable[[bytes], bytes] = bytes,
-) -> None:
-    """Write manifest and sizes in glyph index order with the gallery's page and tables, and count glyphs in a summary.
+def conclude(out: Path, record: Record, with_gallery: bool = False, changed: Callable[[bytes], bytes] = bytes) -> None:
+    """Write manifest and sizes in glyph index order with the gallery's page and tables.
 
     The manifest gets its name, and the journal is removed, when all the rest is written: otherwise an interruption
     would leave it missing.
@@ -351,10 +345,34 @@ def conclude(
             manifest.write(line)
             if known is not None:
                 lengths.write(b"%d\t%s\n" % (gid, known))
-            entry = json.loads(line)
-            summary.add(entry)
             if gallery:
-                gallery.add(record.rows.get(gid) or row_of(entry))
+                gallery.add(record.rows.get(gid) or row_of(json.loads(line)))
         if gallery:
             gallery.close(read_run(out) or {})
     (out / JOURNAL).unlink(missing_ok=True)
+
+
+STORED = "stored"
+"""In a line of the manifest: what the run's files of a whole font hold of the glyph, by format."""
+
+
+def state(out: Path, stored: Mapping[str, Mapping[str, Any]]) -> None:
+    """Say in the manifest of a finished folder what files hold: facts by format and glyph."""
+    with replacing(out / MANIFEST, durable=True) as manifest:
+        for entry in entries_of(out):
+            known = {**entry.get(STORED, {}), **{kind: facts.get(entry["glyph"]) for kind, facts in stored.items()}}
+            manifest.write(f"{encoded(entry | {STORED: known})}\n".encode())
+
+
+def is_stated(out: Path) -> bool:
+    """Whether it is said there; a manifest that is written anew does not."""
+    return all(STORED in entry for entry in islice(entries_of(out), 1))
+
+
+def unstated(line: bytes) -> bytes:
+    """A line of a manifest that does not say it."""
+    if f'"{STORED}"'.encode() not in line:
+        return line
+    entry = json.loads(line)
+    entry.pop(STORED, None)
+    return f"{encoded(entry)}\n".encode()

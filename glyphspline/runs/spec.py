@@ -25,7 +25,6 @@ from ..writers.settings import Maps, Settings
 
 if TYPE_CHECKING:
     from ..readers import Source
-    from ..writers.font.font_glyphs import Flavour
 
 RUN_FILE = "run.json"
 
@@ -198,16 +197,23 @@ class RunSpec:
     def fitting(self, units_per_em: float) -> Options:
         """The options of the conversion. If a font is written, its rounding is subtracted from the tolerance.
 
-        With continuity "g2" results are on the font's grid, and quadratics are not made of them.
+        With continuity "g2" results are on the font's grid, and quadratics are not made of them. Other curves are
+        certified as they are rounded to the precision, and an otf has them as they are; a UFO has points at extrema of
+        these, which are rounded once more.
         """
-        written: tuple[Flavour, ...] = ("otf",) if self.options.is_for_fonts else ("otf", "ttf")
-        flavours = [name for name in written if name in self.formats]
-        if not flavours or self.options.is_fixed:
+        g2, tolerance, left = self.options.is_for_fonts, self.options.tolerance_for(units_per_em), list[float]()
+        if self.options.is_fixed or not (self.is_back or {*self.whole} - {PARQUET}):
             return self.options
-        from ..writers.font.font_glyphs import fitting_tolerance
+        from ..writers.font.font_glyphs import ROUNDING, fitting_tolerance
 
-        tolerance = self.options.tolerance_for(units_per_em)
-        return replace(self.options, tolerance=min(fitting_tolerance(tolerance, name) for name in flavours))
+        rounding = 0.0 if g2 else ROUNDING * 10.0**-self.options.precision
+        if self.is_back or "ufo" in self.formats:
+            left.append(max(tolerance - 2 * rounding, tolerance / 2))
+        if "otf" in self.formats:
+            left.append(max(fitting_tolerance(tolerance, "otf") - rounding, tolerance / 2))
+        if "ttf" in self.formats and not g2:
+            left.append(fitting_tolerance(tolerance, "ttf"))
+        return replace(self.options, tolerance=min(left)) if left else self.options
 
 
 REQUEST = ("command", "selection", "selected", "missing")

@@ -32,7 +32,7 @@ class Summary:
 
     Attributes:
         statuses: glyphs by status. not_converged, outside_tolerance, new_crossings, collapsed, source_kept: glyphs with
-            such a contour.
+            such a contour; or that are outside the tolerance in a file of the whole font.
         contours, splines: that were fitted, and those of them that are one closed spline without a corner.
         named: the first few glyphs of the last four, by what it is. left_out: (glyph, notes), the first few that came
             out empty because of what was left out.
@@ -75,7 +75,8 @@ class Summary:
             contour.get("iterations") is not None and contour.get("numbers") == 2 * contour["segments"]
             for contour in contours
         )
-        outside = any(contour.get("within_tolerance") is False for contour in contours)
+        stored = [facts for facts in (entry.get("stored") or {}).values() if facts]
+        outside = any(measures.get("within_tolerance") is False for measures in (*contours, *stored))
         changed = {name: any(contour.get(name) for contour in contours) for name in CHANGED}
         for name, is_one in {"outside_tolerance": outside, **changed}.items():
             if is_one:

@@ -78,7 +78,8 @@ def test_every_glyph_is_within_tolerance_of_its_source(
         assert new.advance == old.advance
         assert new.unicodes == old.unicodes
         distance = largest_distance(old, new)
-        assert distance <= (summary.largest_error if name in replaced else 1.25)
+        # Samples are a quarter of a unit apart at most: none is farther from the other's than by 0.01 too much.
+        assert distance <= (summary.largest_error + 0.01 if name in replaced else 1.25)
         if name in replaced and old.contours and name != "space":
             assert distance > 0
         if abs(total_area(old)) > 1:

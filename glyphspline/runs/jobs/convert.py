@@ -5,14 +5,16 @@ from __future__ import annotations
 import re
 import shlex
 import time
+from collections import ChainMap
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...curves.curvature import Comb, shared_scale
-from ...errors import OutputError
+from ...errors import FontError, OutputError
 from ...extras import need
 from ...files import remove_partials, write_whole, writing
 from ...fitting.results import GlyphResult, as_glyph
@@ -20,8 +22,9 @@ from ...readers import Source, open_font
 from ...readers.svg import SvgDrawings
 from ...report import FOLDER as GALLERY
 from ...report.gallery import is_whole, write_index, write_report
-from ...types import Names, counted, rounded_up, shortened
+from ...types import Names, counted, shortened
 from ...writers.formats import format_named
+from ...writers.read_back import Held, Promise, held
 from ...writers.svg.comb import combs
 from ..engine import Item, Job, Observer, reason, run
 from ..file_names import file_names
@@ -34,10 +37,13 @@ from ..folder import (
     conclude,
     done,
     entries_of,
+    is_stated,
     locked,
     prepare,
     read_record,
     recorded,
+    state,
+    unstated,
 )
 from ..result_text import stored
 from ..rows import Rows
@@ -167,14 +173,17 @@ def convert_font(
         gallery = GALLERY in spec.formats
         concluded = (out / MANIFEST).exists() and not (out / JOURNAL).exists()
         if left or not concluded or (gallery and not is_whole(out, len(record.where))):
-            conclude(out, record, summary, gallery)
-        else:
-            for entry in entries_of(out):
-                summary.add(entry)
-        if left or (rows and rows.added) or not all(path.exists() for path in font_files(source, out, spec)):
+            conclude(out, record, gallery, unstated)
+        holds = is_stated(out) or {*spec.whole} <= {PARQUET}
+        holds = holds and all(path.exists() for path in font_files(source, out, spec))
+        if left or (rows and rows.added) or not holds:
             summary.remarks += write_fonts(source, out, spec, rows)
         if spec.is_back:
-            summary.remarks += back_to_source(source, results_of(source, out, spec), spec)
+            remarks, found = _write_ufo(source, results_of(source, out, spec), None, spec)
+            summary.remarks += remarks
+            state(out, {"source": found.facts()})
+        for entry in entries_of(out):
+            summary.add(entry)
     summary.missing = getattr(glyphs, "missing", ())
     if not spec.options.is_fixed:
         each_its_em = spec.options.tolerance is None and isinstance(source, SvgDrawings)
@@ -256,21 +265,19 @@ def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> 
         OutputError: a file cannot be written, or a stored result cannot be read.
         GlyphsplineError: the source cannot become such a font.
     """
-    remarks = []
+    remarks, stored = [], dict[str, dict[str, Any]]()
     for path in font_files(source, out, spec):
-        glyphs = results_of(source, out, spec)
+        kind, glyphs = path.suffix[1:], results_of(source, out, spec)
         with writing(path):
-            if path.suffix == ".ufo" and source.format == "UFO":
-                remarks += back_to_source(source, glyphs, spec, path)
-            elif path.suffix == ".ufo":
-                from ...writers.ufo_folder import write_ufo
-
-                remarks.append(f"{path.name}: {write_ufo(source, glyphs, path)} glyphs")
-            elif path.suffix == ".parquet":
+            if kind == PARQUET:
                 assert rows is not None
                 remarks.append(f"{path.name}: {rows.write(entry['gid'] for entry in entries_of(out))} contours")
-            else:
-                remarks.append(_write_font(source, glyphs, path, spec))
+                continue
+            written, found = (_write_ufo if kind == "ufo" else _write_font)(source, glyphs, path, spec)
+        remarks += written
+        stored[kind] = found.facts()
+    if stored:
+        state(out, stored)
     return remarks
 
 
@@ -319,7 +326,43 @@ def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult
             yield stored(out / RESULTS / Path(entry["files"][RESULTS]).name, GlyphResult)
 
 
-def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> str:
+def _write_ufo(
+    source: Source, glyphs: Iterator[GlyphResult], path: Path | None, spec: RunSpec
+) -> tuple[list[str], Held]:  # fmt: skip
+    """Write a UFO; without a path into the source. Returns remarks, and what it holds."""
+    from ...writers.ufo_folder import write_ufo
+
+    promises = dict[str, Promise]()
+
+    def each() -> Iterator[GlyphResult]:
+        for result in glyphs:
+            tolerance = spec.options.tolerance_for(result.outline.metrics.units_per_em)
+            promises.update({result.outline.name: promise} if (promise := Promise.of(result, tolerance)) else {})
+            yield result
+
+    if path is None or source.format == "UFO":
+        remarks = back_to_source(source, each(), spec, path)
+    else:
+        remarks = [f"{path.name}: {write_ufo(source, each(), path)} glyphs"]
+    path, layer = path or source.path, None if path else spec.layer
+    found = read_back(path, promises, layer)
+    near, far = found.words
+    return remarks + [f"{path.name}, as read back{near}{far}"] * bool(near), found
+
+
+def read_back(path: Path, promises: Mapping[str, Promise], layer: str | None) -> Held:
+    """What a written UFO holds of what was promised; with a layer, in that one where it has the glyph."""
+    from ...readers.ufo import Ufo
+
+    written: Any = Ufo.opened(path)
+    if layer:
+        with suppress(FontError):  # none is made if nothing changes
+            written.default_layer = ChainMap(written.layer(layer), written.default_layer)
+    return held(written, {name: each for name, each in promises.items() if name in written.gids})
+
+
+def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> tuple[list[str], Held]:
+    """Write a font; returns a remark, and what it holds."""
     from ...writers.font.font_file import to_font
     from ...writers.font.stored import compared, stored_facts
 
@@ -334,14 +377,13 @@ def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec:
     flavour: Literal["otf", "ttf"] = "otf" if path.suffix == ".otf" else "ttf"
     data, summary = to_font(source, each(), flavour, tolerance=tolerance, family=spec.family_of(source))
     write_whole(str(path), data, durable=True)
-    remark = f"{path.name}: {summary.replaced} glyphs replaced"
-    if summary.largest_error is not None:
-        remark += f", within {rounded_up(summary.largest_error, 3):.3g} units of the source"
+    found = Held(summary.bounds, summary.beyond)
+    near, far = found.words
+    remark = f"{path.name}: {summary.replaced} glyphs replaced{near}"
     if not spec.options.is_for_fonts:
         splines = f", {summary.extrema} points added at extrema" if flavour == "otf" else ", as quadratics near these"
         remark += f", as C2 splines (--continuity g2: fewer points){splines}"
-    if summary.beyond:
-        remark += f"; {len(summary.beyond)} may be beyond the tolerance: {', '.join(summary.beyond[:5])}"
+    remark += far
     if len((new := open_font(path)).glyph_names) == len(source.glyph_names):
         remark += f"; {compared(stored_facts(source, gids), stored_facts(new, gids))}"
-    return remark
+    return [remark], found

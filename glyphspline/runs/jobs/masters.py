@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import partial
+from math import inf, isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -35,7 +36,20 @@ from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
 from ..engine import Job, Observer, reason
-from ..folder import Done, Output, Record, Task, conclude, done, locked, prepare, read_record, recorded, recorded_lines
+from ..folder import (
+    Done,
+    Output,
+    Record,
+    Task,
+    conclude,
+    done,
+    entries_of,
+    locked,
+    prepare,
+    read_record,
+    recorded,
+    recorded_lines,
+)
 from ..result_text import stored
 from ..schedule import Place, place_of, sources
 from ..spec import RESULTS, RunSpec, describe, write_run
@@ -191,7 +205,9 @@ def convert_font_masters(
         for name in spec.folders:
             remove_partials(out / name)
         written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
-        conclude(out, record, summary, GALLERY in spec.formats, changed=partial(_with_written, *written))
+        conclude(out, record, GALLERY in spec.formats, changed=partial(_with_written, *written))
+        for entry in entries_of(out):
+            summary.add(entry)
     summary.seconds = time.perf_counter() - began
     return summary
 
@@ -269,7 +285,11 @@ def _stored(glyph: StoredGlyph, redrawn: Mapping[str, Redrawn], name: str, toler
     bound, counts = bound_of(glyph, redrawn[name]), dict[str, Any]()
     if glyph.tally is not None:
         counts = dict(zip(("points", "kinks", "kinks_between_masters"), glyph.tally.tolist(), strict=True))
-    return {"bound": rounded_up(bound, 6), "within_tolerance": bound <= tolerance, **counts}
+    return {**_bounded(bound, tolerance), **counts}
+
+
+def _bounded(bound: float, tolerance: float) -> dict[str, Any]:
+    return {"bound": rounded_up(bound, 6) if isfinite(bound) else None, "within_tolerance": bound <= tolerance}
 
 
 def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> str:
@@ -322,8 +342,9 @@ def _write_fonts(
         with writing(path):
             data, facts = _font(sources, redrawn, flavour, spec, axis)
             write_whole(str(path), data, durable=True)
+        stored |= {name: _bounded(bound, tolerance) for name, bound in facts.composed.items()}
         stored |= {name: _stored(glyph, redrawn, name, tolerance) for name, glyph in facts.glyphs.items()}
-        summary.remarks.append(_replaced(path, facts, [each["bound"] for each in stored.values()]))
+        summary.remarks.append(_replaced(path, facts, [each["bound"] or inf for each in stored.values()]))
         stays |= facts.left
     if isinstance(source, Designspace) and ("ufo" in spec.formats or spec.is_back):
         copy = paths.get("ufo")

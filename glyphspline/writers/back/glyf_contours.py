@@ -30,7 +30,7 @@ class GlyfContours(Stored):
 
     def __init__(self, font: TTFont, name: str, glyph: Masters, gvar: Gvar | None) -> None:
         self._simple, self._gid, self._gvar, self._glyph = font["glyf"][name], font.getGlyphID(name), gvar, glyph
-        self._record = record = Record(font, name, glyph, gvar)
+        self._record = record = Record.of(font, name, glyph, gvar)
         self._points = record.outline(record.drawn)
         whole = [quadratics(self._points[:, a:b], record.on[a:b])[:2] for a, b in record.spans]
         self._singles = [singles(*each) for each in whole]

@@ -13,8 +13,8 @@ from __future__ import annotations
 import logging
 import math
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -30,15 +30,17 @@ from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from ...readers import Font, Source
 from ...readers.source import reason, reusing
+from ..read_back import Held, Promise, held
 from .font_glyphs import (
+    GRID,
     Drawn,
     Flavour,
     decomposed,
     drawn_outline,
     drawn_result,
     drop_endless,
-    parts_of,
     put_string,
+    scales,
     stays,
     users,
 )
@@ -72,9 +74,11 @@ class FontSummary:
 
     Attributes:
         family: the new name. replaced: number of glyphs with new outlines.
-        largest_error: bound of their distance from the source, in font units; None if not measured.
-        beyond: names of the glyphs that may be farther from the source than their tolerance.
+        largest_error: the largest of ``bounds``; None if there are none.
+        beyond: names of the glyphs that are farther from the source than their tolerance.
         extrema: number of points added at extrema.
+        bounds: by name, certified bounds of the glyphs' distances from the source, in both directions, in font units,
+            as the font draws them. Of glyphs whose conversion measured their distance, and of composites of these.
     """
 
     family: str
@@ -82,6 +86,7 @@ class FontSummary:
     largest_error: float | None
     beyond: tuple[str, ...]
     extrema: int
+    bounds: Mapping[str, float] = field(default_factory=dict)
 
 
 def to_font(
@@ -106,7 +111,7 @@ def to_font(
         GlyphsplineError: the source has no outlines, or is broken.
     """
     family = family or f"{source.family} Spline"
-    beyond, errors, added = [], [], 0
+    promises, replaced, added = dict[int, Promise](), 0, 0
     with reusing(source.path, source.kind):
         font = base_tables(source)
         if "glyf" in font:
@@ -120,17 +125,30 @@ def to_font(
             except GlyphsplineError as error:
                 log.warning("%s: not replaced", error)
                 continue
-            errors.append(drawn.error)
+            replaced += 1
             added += drawn.extrema
-            if drawn.error is not None and drawn.error > allowed:
-                beyond.append(result.outline.name)
-        target.finish()
+            if drawn.promise is not None:
+                promises[target.gid(result.outline)] = drawn.promise
+        followed = target.finish()
         rename(font, family, source.style)
         data = saved(font)
         if flavour == "otf" and _grew(font, data) and share_subroutines(font):
             data = saved(font)
-    largest = max((error for error in errors if error is not None), default=None)
-    return data, FontSummary(family, len(errors), largest, tuple(beyond), added)
+        found = measured(source, data, promises, followed)
+    return data, FontSummary(family, replaced, found.largest, tuple(found.beyond), added, found.bounds)
+
+
+def measured(source: Source, data: bytes, promises: Mapping[int, Promise], followed: Sequence[int]) -> Held:
+    """What a font's bytes hold of what was promised, by index.
+
+    Composites of ``followed``, which are drawn with other components than before, are promised as much.
+    """
+    if not promises:
+        return Held({}, ())
+    allowed = max(each.tolerance for each in promises.values())
+    others = source.outlines([gid for gid in followed if gid not in promises], errors="return")
+    more = {each.gid: Promise(each, allowed) for each in others if isinstance(each, Outline)}
+    return held(Font(source.path, data, 0, None), {**promises, **more})
 
 
 class _InPlace:
@@ -156,11 +174,15 @@ class _InPlace:
                     if value is not None:
                         setattr(private, key, value)
 
+    def gid(self, outline: Outline) -> int:
+        """The index of a glyph in the font."""
+        return outline.gid
+
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         name = self.names[result.outline.gid]
         self.is_g2 = self.is_g2 or result.options.is_for_fonts
         if stays(result, self.flavour):
-            return Drawn(None, None, 0.0)
+            return Drawn(None, None, Promise(result.outline, tolerance))
         width = stored_width(self.font, name, self.strings[name].private) if self.flavour == "otf" else None
         drawn = drawn_result(result, tolerance, self.flavour, width, extrema, in_place=True)
         if self.flavour == "ttf":
@@ -172,14 +194,15 @@ class _InPlace:
         set_bearings(self.font, name, drawn, result.outline)
         return drawn
 
-    def finish(self) -> None:
+    def finish(self) -> list[int]:
+        """Store what follows; the indices of the composites that are drawn with new components."""
         if self.flavour != "ttf":
             self.font["CFF "].cff.remove_unused_subroutines()
-            return
+            return []
         glyf = self.font["glyf"]
         touched = [name for name in users(self.font, self.new) if name not in self.new]
         counted = placed_by_points(self.font) if self.is_g2 else {}
-        whole = [name for name in touched if not self.is_g2 or not counted.keys().isdisjoint(parts_of(self.font, name))]
+        whole = [name for name in touched if not self.is_g2 or not self._follows(name, counted)]
         self.new |= {name: decomposed(glyf, name) for name in whole}
         lefts = {name: glyf[name].xMin for name in touched if name not in self.new}
         for name in self.names:
@@ -191,6 +214,12 @@ class _InPlace:
         for name, left in lefts.items():  # rasterisers place an outline by its left side bearing
             glyf[name].recalcBounds(glyf)
             metrics[name] = (metrics[name][0], metrics[name][1] + glyf[name].xMin - left)
+        return [self.font.getGlyphID(name) for name in lefts]
+
+    def _follows(self, name: str, counted: Mapping[str, str]) -> bool:
+        """Whether a composite keeps its components: none is drawn larger than it is, nor placed by points."""
+        parts = scales(self.font, name)
+        return max(parts.values()) <= 1 + GRID and counted.keys().isdisjoint(parts)
 
 
 def saved(font: TTFont) -> bytes:
@@ -277,6 +306,10 @@ class _Rebuilt:
         self.of_name = stored_names(source, font)
         self.glyphs: dict[str, Any] = {}
 
+    def gid(self, outline: Outline) -> int:
+        """The index of a glyph in the font."""
+        return int(self.font.getGlyphID(self.of_name[outline.name]))
+
     def replace(self, result: GlyphResult, tolerance: float, extrema: bool) -> Drawn:
         outline = result.outline
         drawn = drawn_result(result, tolerance, self.flavour, round(outline.advance), extrema)
@@ -288,7 +321,8 @@ class _Rebuilt:
         set_bearings(self.font, name, drawn, outline)
         return drawn
 
-    def finish(self) -> None:
+    def finish(self) -> list[int]:
+        """Draw all other glyphs; none of them follows those that were replaced."""
         for name in self.source.glyph_names:
             if self.of_name[name] not in self.glyphs:
                 self._put(*self._drawn(name))
@@ -297,6 +331,7 @@ class _Rebuilt:
             self.of_name[".notdef"] = ".notdef"
             self._put(drawn_outline(empty, self.flavour), empty)
         become(self.font, self.flavour, {name: self.glyphs[name] for name in self.font.getGlyphOrder()}, self.family)
+        return []
 
     def _drawn(self, name: str) -> tuple[Drawn, Outline]:
         """A glyph that was not converted."""

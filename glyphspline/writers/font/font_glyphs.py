@@ -26,6 +26,7 @@ from ...fitting.results import GlyphResult
 from ...outlines.extrema import extremal_pieces
 from ...outlines.outline import Contour, Outline
 from ...types import BoolArray, FloatArray, IntArray
+from ..read_back import Promise
 
 Flavour = Literal["otf", "ttf"]
 
@@ -54,13 +55,12 @@ LIMIT = 32767
 class Drawn:
     """A glyph ready to be stored: ``data`` for the table, and its bounds.
 
-    ``error`` bounds the two-sided distance from the source in font units; None if the conversion measured none.
-    ``extrema`` is the number of points added at extrema.
+    ``promise`` is None if the conversion measured no distance. ``extrema`` is the number of points added at extrema.
     """
 
     data: Any
     bounds: tuple[float, float, float, float] | None
-    error: float | None
+    promise: Promise | None
     extrema: int = 0
 
 
@@ -90,17 +90,19 @@ def drawn_result(
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
     deviation = max((value for value in measured if value is not None), default=0.0)
-    room = max(tolerance - deviation, 0.0) if known else math.inf
+    # Measured are curves as they are rounded to the precision, which are not what is stored.
+    rounding = 0.0 if g2 else ROUNDING * 10.0**-result.options.precision
+    room = max(tolerance - deviation - rounding, 0.0) if known else math.inf
     if flavour == "ttf" and g2:
         contours = list(outline.contours) if in_place else oriented(outline.contours, flavour)
-        data, error = in_quadratics(contours, result.options, tolerance, em, name)
-        return Drawn(data, bounds_of(data, []), error + outline.snapped)
+        data = in_quadratics(contours, result.options, tolerance, em, name)
+        return Drawn(data, bounds_of(data, []), Promise(outline, tolerance))
     exact = oriented([contour.curve for contour in result.contours], flavour)
     split = [extremal_pieces(c, em) if extrema and not g2 else [[part] for part in c.segments()] for c in exact]
     if flavour == "ttf":
         contours = [Contour.from_segments(chain.from_iterable(pieces)) for pieces in split]
         near = max(room if known else 0.0, SHARE * tolerance)
-        data, error = in_quadratics(contours, result.options, near, em, name)
+        data = in_quadratics(contours, result.options, near, em, name)
     else:
 
         def rounded(parts: int) -> tuple[list[Contour], float]:
@@ -111,10 +113,10 @@ def drawn_result(
         # On the grid already, but for stretches that stay as a source has them that is not.
         parts = 1 if error <= (GRID if g2 else room) else FINE
         if parts == FINE:
-            contours, error = rounded(FINE)
+            contours, _ = rounded(FINE)
         data = char_string(contours, width, parts, name)
     added = sum(map(len, contours)) - sum(map(len, exact))
-    return Drawn(data, bounds_of(data, contours), deviation + error if known else None, added)
+    return Drawn(data, bounds_of(data, contours), Promise.of(result, tolerance), added)
 
 
 def stays(result: GlyphResult, flavour: Flavour) -> bool:
@@ -163,7 +165,7 @@ def drawn_outline(outline: Outline, flavour: Flavour) -> Drawn:
     elif (outline.arrays.degrees < 3).all():
         data = cut_alone(contours, 0.0, outline.name)
     else:
-        data, _ = in_quadratics(contours, FONTS, em / 1000, em, outline.name)
+        data = in_quadratics(contours, FONTS, em / 1000, em, outline.name)
     return Drawn(data, bounds_of(data, contours), None)
 
 
@@ -203,10 +205,8 @@ def doubles_back(contour: Contour) -> bool:
     return bool((opposite & lines & np.roll(lines, 1)).any())
 
 
-def in_quadratics(
-    contours: Sequence[Contour], options: Options, tolerance: float, em: float, name: str
-) -> tuple[Glyph, float]:
-    """A glyph as quadratics with as few points as follow its contours, and a bound of their distance from these.
+def in_quadratics(contours: Sequence[Contour], options: Options, tolerance: float, em: float, name: str) -> Glyph:
+    """A glyph as quadratics with as few points as follow its contours, within ``tolerance`` if the grid has them.
 
     Contours of lines and quadratics keep what need not change. Where whole units do not have others near enough, each
     cubic becomes some by itself.
@@ -216,13 +216,13 @@ def in_quadratics(
     arrays = Outline(name, contours=[each for each in contours if len(each)]).arrays
     check_size(arrays.points.tolist(), name)
     found, distance = quadratic_points(arrays, options, tolerance, em)
-    if distance > tolerance:
-        step = max(tolerance - ROUNDING, SHARE * tolerance / 2)
-        return cut_alone(contours, step, name), ROUNDING + step
-    points = np.rint(np.concatenate([np.empty((0, 2)), *(points for points, _ in found)])).astype(np.int64)
+    exact = np.concatenate([np.empty((0, 2)), *(points for points, _ in found)])
+    points = np.rint(exact).astype(np.int64)  # whole but for rounding errors: cut off, one just below would move by 1
+    if distance + np.hypot(*(points - exact).T).max(initial=0.0) > tolerance:
+        return cut_alone(contours, max(tolerance - ROUNDING, SHARE * tolerance / 2), name)
     check_size(points.tolist(), name)
     on = np.concatenate([np.empty(0, dtype=np.bool_), *(on for _, on in found)])
-    return simple_glyph(points, on, (np.cumsum([len(on) for _, on in found]) - 1).tolist(), False), distance
+    return simple_glyph(points, on, (np.cumsum([len(on) for _, on in found]) - 1).tolist(), False)
 
 
 def cut_alone(contours: Sequence[Contour], step: float, name: str) -> Glyph:
@@ -314,6 +314,33 @@ def put_string(strings: Any, name: str, new: Any) -> None:
         strings.charStringsIndex[strings.charStrings[name]] = new
     else:
         strings[name] = new
+
+
+def scales(font: TTFont, name: str, known: dict[str, dict[str, float]] | None = None) -> dict[str, float]:
+    """The simple glyphs that a glyph of ``glyf`` is made of, and how much each, and its distances, are enlarged.
+
+    Args:
+        known: of glyphs that were asked for before, and now of this one.
+    """
+    known, glyph, found = {} if known is None else known, font["glyf"][name], dict[str, float]()
+    if name in known:
+        return known[name]
+    for part in glyph.components if glyph.isComposite() else ():
+        own = float(np.linalg.norm(part.transform, ord=2)) if hasattr(part, "transform") else 1.0
+        for each, scale in scales(font, part.glyphName, known).items():
+            found[each] = max(found.get(each, 0.0), own * scale)
+    known[name] = found if glyph.isComposite() else {name: 1.0}
+    return known[name]
+
+
+def enlarged(font: TTFont) -> dict[str, float]:
+    """How much simple glyphs of ``glyf`` are enlarged at most by composites, of those that are."""
+    found, known = dict[str, float](), dict[str, dict[str, float]]()
+    for name in font.getGlyphOrder():
+        if font["glyf"].glyphs[name].isComposite():  # others are not read
+            parts = scales(font, name, known).items()
+            found |= {part: max(scale, found.get(part, 1.0)) for part, scale in parts if scale > 1}
+    return found
 
 
 def parts_of(font: TTFont, name: str) -> list[str]:

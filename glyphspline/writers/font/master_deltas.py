@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ...curves.integrals import area
 from ...errors import GlyphsplineError
 from ...outlines.masters import MasterContour, Masters
+from ...readers.pens import ContourPen
 from ...types import BoolArray, FloatArray, IntArray, counted
 from .font_glyphs import LIMIT, Flavour
 
@@ -60,10 +62,8 @@ class StoredGlyph:
 
     Attributes:
         inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
-        distance: the largest from the contours that were given, in font units, at the corners of the design space and
-            in between. In CFF2 a bound; in glyf from dense samples.
-        bound: of the distance from the source: certified up to the contours that were given, and from there the
-            distance of what is stored; None if no bounds were given.
+        distance: certified bound of the largest distance from the contours that were given, in font units, at any
+            location. bound: of that from the source; None if no bounds were given.
         tally: (3, 2) before and after: points, in glyf as stored, in CFF2 lines and curves; joints that ``check``
             reports along the axes and in masters; and those of them that turn more between masters than in them. None
             likewise.
@@ -73,6 +73,24 @@ class StoredGlyph:
     distance: float
     bound: float | None = None
     tally: IntArray | None = None
+
+
+def displaced(found: Masters, drawn: Masters) -> float:
+    """How far the points of a glyph, as it was read, are at most from those that were to be drawn, at any location.
+
+    Infinite where it has other segments; those of no length do not count.
+    """
+    pen, corners = ContourPen(masters=len(drawn)), drawn.grid()
+    for contour in drawn.contours:
+        pen.contour(contour.points, contour.degrees)
+    far, weights = 0.0, (found.weights_at(corners), drawn.weights_at(corners))
+    if [each.degrees.tolist() for each in pen.stacks] != [each.degrees.tolist() for each in found.contours]:
+        return inf
+    for both in zip(found.contours, pen.stacks, strict=True):
+        # Between the corners of the grid points are convex combinations of those there, and so are their distances.
+        here, there = (np.tensordot(w, contour.points, axes=1) for w, contour in zip(weights, both, strict=True))
+        far = max(far, float(np.linalg.norm(here - there, axis=2).max()))
+    return far
 
 
 def bound_of(glyph: StoredGlyph, redrawn: Redrawn) -> float:

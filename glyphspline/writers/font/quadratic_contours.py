@@ -79,7 +79,8 @@ def in_quadratics(
         room = max(room - rest, room / 2)
         points, on, far = quadratic_contour(sources, stored, corners, looks, options, room, em, stays[c])
         drawn = as_drawn(masters, rounded_deltas(masters, points, 1), 1)
-        bounds[c] = wanted[c] + far + float(np.linalg.norm(drawn - points, axis=2).max(initial=0.0))
+        rounded = np.linalg.norm(np.tensordot(corners, drawn - points, axes=1), axis=2)
+        bounds[c] = wanted[c] + far + float(rounded.max(initial=0.0))
         whole, degrees, inner[c] = quadratics(drawn - offset, on)
         contours[c], sizes[c] = MasterContour(whole, degrees), len(on)
         more = len(on) - len(own.on) if own else 0

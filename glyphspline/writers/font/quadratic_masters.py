@@ -13,6 +13,7 @@ from ...fitting.options import Options
 from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
 from ...types import IntArray
+from .font_glyphs import drop_endless
 from .quadratic_contours import in_quadratics, unchanged
 from .stretches import Turning, tally
 from .variable_glyf import Quadratics
@@ -29,7 +30,8 @@ def quadratic_masters(source: Font, masters: Masters, options: Options) -> Maste
     """
     tolerance, corners = options.tolerance_for(masters.metrics.units_per_em), masters.weights_at(masters.grid())
     tallies, known = dict[tuple[MasterContour, ...], IntArray](), glyphs_of(source)
-    owns, shift = known[0].own(known[1][masters.gid], masters) if known else ({}, np.zeros(len(masters)))
+    owns, shift = ({}, np.zeros(len(masters))) if known is None else known[0].own(known[1][masters.gid], masters)
+    tolerance *= 1.0 if known is None else known[0].share(known[1][masters.gid])
 
     def fit(numbers: Sequence[int], share: float) -> list[MastersContourResult]:
         contours = tuple(masters.contours[c] for c in numbers)
@@ -64,4 +66,7 @@ def kept(source: MasterContour, made: MasterContour) -> int:
 def glyphs_of(source: Font) -> tuple[Quadratics, list[str]] | None:
     """The glyphs of a font, if it has ``glyf``, and their names as stored."""
     font = source.tables()
-    return (Quadratics(font), font.getGlyphOrder()) if "glyf" in font else None
+    if "glyf" not in font:
+        return None
+    drop_endless(font)
+    return Quadratics(font), font.getGlyphOrder()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from typing import Any
@@ -24,12 +24,12 @@ from ...errors import GlyphsplineError, OutputError
 from ...outlines.contour_arrays import lines_and_cubics
 from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
-from ...readers.opentype.variations import executed
+from ...readers.opentype.variations import Variations, executed
 from ...readers.source import reusing
-from ...types import FloatArray, IntArray, counted
+from ...types import FloatArray, Head, IntArray, counted
 from .font_file import drop_signature, replace_family, saved, stored_names
-from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string
-from .master_deltas import Redrawn, StoredGlyph, as_drawn, check_steps, order_of, rounded_deltas
+from .font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string, scales
+from .master_deltas import Redrawn, StoredGlyph, check_steps, displaced, order_of, rounded_deltas
 from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variable_glyf import Quadratics
 
@@ -49,12 +49,14 @@ class VariableSummary:
     """The facts of a written variable font.
 
     Attributes:
-        glyphs: those that were replaced.
+        glyphs: those that were replaced. composed: of composites of these, certified bounds of the distances from the
+            source, where they are known.
         left: why others have their old outlines; not composites whose components were all replaced.
     """
 
     glyphs: dict[str, StoredGlyph] = field(default_factory=dict)
     left: dict[str, str] = field(default_factory=dict)
+    composed: dict[str, float] = field(default_factory=dict)
 
     @property
     def tally(self) -> IntArray | None:
@@ -124,7 +126,22 @@ def to_variable_font(
         if family is not None:
             replace_family(font, family)
         data = saved(font)
-    return data, VariableSummary(glyphs, left)
+        composed = _composed(font, names, glyphs, redrawn) if quadratics else {}
+    return data, VariableSummary(glyphs, left, composed)
+
+
+def _composed(
+    font: TTFont, names: Mapping[str, str], glyphs: Mapping[str, StoredGlyph], redrawn: Mapping[str, Redrawn]
+) -> dict[str, float]:
+    """Bounds of the composites among the glyphs that were to be redrawn: of their components, as large as these are."""
+    given, found = {stored: name for name, stored in names.items()}, dict[str, float]()
+    for name in redrawn:
+        if font["glyf"][names[name]].isComposite():
+            parts = [(given[part], scale) for part, scale in scales(font, names[name]).items()]
+            bounds = [(scale, glyphs[part].bound) for part, scale in parts if part in glyphs]
+            if known := [scale * bound for scale, bound in bounds if bound is not None]:
+                found[name] = max(known)
+    return found
 
 
 def flavour_of(source: Font) -> Flavour:
@@ -215,13 +232,11 @@ class CharStrings2:
                 f"its char string would have {len(new.bytecode)} bytes, more than {LONGEST}", glyph=name
             )
         put_string(self._strings, name, new)
-        drawn = [as_drawn(masters, each, PARTS) for each in steps]
-        # Convex, and multilinear between the corners of the grid: largest at one of them, and at a control point.
-        corners = masters.weights_at(masters.grid())
-        moved = [corners @ (now - c.points).reshape(len(masters), -1) for now, c in zip(drawn, contours, strict=True)]
-        far = [float(np.hypot(each[:, ::2], each[:, 1::2]).max(initial=0.0)) for each in moved]
-        bounds = [bound + each for bound, each in zip(redrawn.bounds, far, strict=False)]
-        return StoredGlyph(inner, max(far, default=0.0), max(bounds, default=None), tallied)
+        reader = Variations(self._font, masters.axes, masters.metrics)
+        read = reader.masters(Head(name, self._font.getGlyphID(name), ()))
+        far = displaced(read, replace(masters, contours=contours))
+        bound = max(redrawn.bounds) + far if redrawn.bounds else None
+        return StoredGlyph(inner, far, bound, tallied)
 
     def _place(self, masters: Masters, old: Any) -> tuple[int, list[int]]:
         """The index of the item of the store that has just their regions, and the numbers of masters in its order."""

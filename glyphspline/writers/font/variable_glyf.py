@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -11,15 +12,29 @@ import numpy as np
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import Glyph, flagOnCurve, flagOverlapSimple
 from fontTools.ttLib.tables.DefaultTable import DefaultTable
-from fontTools.ttLib.tables.TupleVariation import TupleVariation, compileTupleVariationStore
+from fontTools.ttLib.tables.TupleVariation import (
+    TupleVariation,
+    compileTupleVariationStore,
+    decompileSharedTuples,
+    decompileTupleVariationStore,
+)
 from fontTools.varLib.iup import iup_contour_optimize, iup_delta
 
 from ...errors import GlyphsplineError
 from ...outlines.masters import Masters, quadratics
 from ...readers.pens import ContourPen
 from ...types import FloatArray
-from .font_glyphs import parts_of, simple_glyph, users
-from .master_deltas import Redrawn, StoredGlyph, axes_of, check_steps, numbers_of, region_key, rounded_deltas
+from .font_glyphs import enlarged, parts_of, simple_glyph, users
+from .master_deltas import (
+    Redrawn,
+    StoredGlyph,
+    axes_of,
+    check_steps,
+    displaced,
+    numbers_of,
+    region_key,
+    rounded_deltas,
+)
 from .quadratic_contours import Own, in_quadratics, stored_points
 from .stretches import NEAR, NOTHING_NEW
 
@@ -35,10 +50,14 @@ class Quadratics:
         self._font, self._glyf = font, font["glyf"]
         self._gvar = Gvar(font)
         self._new: dict[str, Glyph] = {}
-        self._counted = placed_by_points(font)
+        self._counted, self._enlarged = placed_by_points(font), enlarged(font)
+
+    def share(self, name: str) -> float:
+        """The share of the tolerance that a glyph has, so that composites have no more than all of it."""
+        return 1 / self._enlarged.get(name, 1.0)
 
     def replace(self, name: str, redrawn: Redrawn, tolerance: float) -> StoredGlyph:
-        """Replace a glyph.
+        """Replace a glyph, within its share of the tolerance.
 
         Raises:
             GlyphsplineError: a coordinate does not fit, or a region of its variations is not one of the masters'.
@@ -46,7 +65,7 @@ class Quadratics:
         masters = redrawn.masters
         if name in self._counted:
             raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
-        record = Record(self._font, name, masters, self._gvar)
+        record = Record.of(self._font, name, masters, self._gvar)
         known, given, shift = numbers_of(masters), record.given, record.lefts
         keys = [region_key(self._gvar.region(variation)) for variation in given]
         for key, variation in zip(keys, given, strict=True):
@@ -56,7 +75,7 @@ class Quadratics:
         compared, wanted = bool(redrawn.bounds), redrawn.bounds or (0.0,) * len(redrawn.contours)
         owns = own_contours(record) if compared else {}
         if redrawn.tally is None:
-            redrawn = in_quadratics(redrawn, owns, shift, tolerance)
+            redrawn = in_quadratics(redrawn, owns, shift, self.share(name) * tolerance)
         kept = {
             c: owns[number]
             for c, (number, contour) in enumerate(zip(redrawn.numbers, redrawn.contours, strict=True))
@@ -99,11 +118,25 @@ class Quadratics:
         self._gvar.put(self._font.getGlyphID(name), tuples)
         far = max((now - before for now, before in zip(redrawn.bounds, wanted, strict=True)), default=0.0)
         bound = max(redrawn.bounds, default=0.0)
-        return StoredGlyph(redrawn.inner, far, *((bound, redrawn.tally) if compared else (None, None)))
+        off = displaced(self._read(name, record), replace(masters, contours=redrawn.contours))
+        return StoredGlyph(redrawn.inner, far + off, *((bound + off, redrawn.tally) if compared else (None, None)))
+
+    def _read(self, name: str, before: Record) -> Masters:
+        """A glyph that was replaced, as its new records have it."""
+        glyph, phantoms = self._new[name], before.coordinates[-PHANTOMS:]
+        if not glyph.numberOfContours:
+            return replace(before.masters, contours=(), repeats=None)
+        coordinates, flags = [*glyph.coordinates, *phantoms], np.frombuffer(bytes(glyph.flags), dtype=np.uint8)
+        given = self._gvar.stored(self._font.getGlyphID(name), len(coordinates))
+        record = Record(before.masters, coordinates, glyph.endPtsOfContours, flags, given, self._gvar)
+        points, pen = record.outline(record.drawn), ContourPen(masters=len(before.masters))
+        for a, b in record.spans:
+            pen.contour(*quadratics(points[:, a:b], record.on[a:b])[:2])
+        return replace(before.masters, contours=pen.stacks, repeats=None)
 
     def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
         """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :func:`in_quadratics`."""
-        record = Record(self._font, name, masters, self._gvar)
+        record = Record.of(self._font, name, masters, self._gvar)
         return own_contours(record), record.lefts
 
     def finish(self) -> None:
@@ -124,16 +157,24 @@ class Record:
             left side bearing is the font's.
     """
 
-    def __init__(self, font: TTFont, name: str, masters: Masters, gvar: Gvar | None) -> None:
-        self.masters = masters
-        self.coordinates, control = font["glyf"]._getCoordinatesAndControls(name, font["hmtx"].metrics)
-        self._ends = control.endPts
-        self.on = np.array([bool(flag & flagOnCurve) for flag in control.flags or ()], dtype=np.bool_)
-        self.spans = list(pairwise([0, *(end + 1 for end in self._ends)])) if len(self.on) else []
-        known, self.given = numbers_of(masters), gvar.variations(name) if gvar is not None else []
-        self.numbers = [known.get(region_key(gvar.region(each)), 0) for each in self.given] if gvar is not None else []
-        self.drawn = self.in_masters(self.coordinates, [each.coordinates for each in self.given])
+    def __init__(
+        self, masters: Masters, coordinates: Sequence[Any], ends: Sequence[int], flags: Any,
+        given: list[TupleVariation], gvar: Gvar | None,
+    ) -> None:  # fmt: skip
+        self.masters, self.coordinates, self.given, self._ends = masters, coordinates, given, ends
+        self.on = np.array([bool(flag & flagOnCurve) for flag in flags], dtype=np.bool_)
+        self.spans = list(pairwise([0, *(end + 1 for end in ends)])) if len(self.on) else []
+        known = numbers_of(masters)
+        self.numbers = [known.get(region_key(gvar.region(each)), 0) for each in given] if gvar is not None else []
+        self.drawn = self.in_masters(coordinates, [each.coordinates for each in given])
         self.lefts = self.drawn[:, -PHANTOMS, 0].copy()
+
+    @classmethod
+    def of(cls, font: TTFont, name: str, masters: Masters, gvar: Gvar | None) -> Record:
+        """A glyph of a font; ``gvar``: None in a static one."""
+        coordinates, control = font["glyf"]._getCoordinatesAndControls(name, font["hmtx"].metrics)
+        given = gvar.variations(name) if gvar is not None else []
+        return cls(masters, coordinates, control.endPts, control.flags or (), given, gvar)
 
     def in_masters(self, coordinates: Sequence[Any], deltas: Sequence[Sequence[Any]]) -> FloatArray:
         """(K, n, 2) points of all masters, phantoms too, with other coordinates and deltas; None: to be inferred."""
@@ -242,6 +283,18 @@ class Gvar:
         """The tuples of a glyph. The table would keep all that it was asked for, in lists of tuples."""
         found = self._table.variations.data.get(name, ())
         return list(found(name) if callable(found) else found)
+
+    def stored(self, gid: int, points: int) -> list[TupleVariation]:
+        """The tuples of a glyph of so many points, phantoms too, as its record has them now."""
+        record = self.records[gid]
+        if not record:
+            return []
+        shared = decompileSharedTuples(self._axes, len(self._shared), b"".join(self._shared), 0)
+        count, at = struct.unpack_from(">HH", record)
+        found: list[TupleVariation] = decompileTupleVariationStore(
+            "gvar", self._axes, count, points, shared, record, 4, at
+        )
+        return found
 
     def region(self, variation: TupleVariation) -> FloatArray:
         """(A, 3) where a tuple counts."""
