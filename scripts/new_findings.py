@@ -1,9 +1,10 @@
 """What ``check`` finds in written and mended fonts and not in their sources: ``python -m scripts.new_findings``.
 
 Of each face so many glyphs, spread evenly, are written as OTF and as TTF with the options that fonts have by default,
-and mended: kinks alone, and all kinds. A finding is new if the source's glyph has none of its kind within 5/1000 em; of
-kinds that belong to whole contours, none of its kind. Each finding is listed below the table of their numbers. The exit
-status is 1 if there are any.
+and mended: kinks alone, and all kinds. A finding is new if the source's glyph has none of its kind within 5/1000 em of
+its point or segment, and, of a jump, no turn that hides one; of kinds that belong to whole contours, none of its kind.
+Jumps and lumps are not looked for in quadratics, so that an OTF made of them has what its source is excused. Each
+finding is listed below the table of their numbers. The exit status is 1 if there are any.
 
 ``--glyphs 0`` takes whole faces, ``--faces DejaVu,Noto`` some of them, ``--ways ttf,mend`` some of the ways. With
 ``--folder`` the fonts stay there, and those that are there already are only compared: a second run with another
@@ -29,6 +30,7 @@ from glyphspline.checks.kinds import KINDS, MENDED
 from glyphspline.checks.on_axes import OF_CONTOURS
 from glyphspline.readers import open_font
 from glyphspline.runs.jobs.check import check_font
+from glyphspline.types import FloatArray
 
 from .survey import faces, parser, table
 
@@ -47,6 +49,12 @@ WAYS = {
 
 NEAR = 0.005
 """Of an em, within which a finding is at the same place."""
+
+AT_JOINTS = ("kink", "jump", "unlevel", "turn", "leftover", "repeated", "spike")
+"""Kinds that belong to the joints of segments."""
+
+HIDDEN = {"jump": ("jump", "kink", "turn")}
+"""Kinds at whose places others are not looked for: curvature jumps where a joint is smooth."""
 
 WHOLE = {KINDS[number].name for number in OF_CONTOURS}
 """Kinds that belong to contours."""
@@ -79,19 +87,29 @@ def written(source: Path, way: str, jobs: int) -> Path:
     return made
 
 
-def found(path: Path) -> list[list[Finding]]:
-    """The findings of each glyph, in the font's order."""
-    font = open_font(path)
-    return [glyph.findings for glyph in check_font(font, font.glyph_names, axes=(), once=False)]
+def found(path: Path) -> list[list[tuple[Finding, FloatArray]]]:
+    """The findings of each glyph, in the font's order, and (2, 2) the boxes around them: of segments, or points."""
+    font, every = open_font(path), []
+    for glyph in check_font(font, font.glyph_names, axes=(), once=False):
+        contours, own = font.outline(glyph.glyph).contours if glyph.findings else (), []
+        for one in glyph.findings:
+            points = np.array([one.point])
+            if one.kind not in AT_JOINTS:
+                points = contours[one.contour].cubics()[one.segment]
+            own.append((one, np.stack([points.min(axis=0), points.max(axis=0)])))
+        every.append(own)
+    return every
 
 
-def new(before: list[list[Finding]], after: list[list[Finding]], near: float) -> Iterator[Finding]:
+def new(
+    before: list[list[tuple[Finding, FloatArray]]], after: list[list[tuple[Finding, FloatArray]]], near: float
+) -> Iterator[Finding]:
     """Findings that a glyph has after and not before."""
     for old, now in zip(before, after, strict=True):
-        for each in now:
-            alike = [one for one in old if one.kind == each.kind]
-            away = [np.abs(np.subtract(one.point, each.point)).max() for one in alike]
-            if not alike or (each.kind not in WHOLE and min(away) > near):
+        for each, (low, high) in now:
+            alike = [box for one, box in old if one.kind in HIDDEN.get(each.kind, (each.kind,))]
+            known = any((low - near <= box[1]).all() and (box[0] <= high + near).all() for box in alike)
+            if not known and not (alike and each.kind in WHOLE):
                 yield each
 
 
