@@ -14,10 +14,6 @@ from ..fields import Rule, check, option, positive
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
 Align: TypeAlias = Literal["start", "center", "end", "justify"]
 Orientation: TypeAlias = Literal["mixed", "upright"]
-Side: TypeAlias = Literal["left", "right"]
-"""The side of a path that letters are on."""
-Place: TypeAlias = Literal["top", "bottom"]
-"""Where on a circle a text has its middle."""
 
 LANGUAGE = re.compile(r"(?:[A-Za-z]{2,3}|[A-Za-z]{5,8}|x)(?:-[A-Za-z0-9]{1,8})*")
 """Language tags (BCP 47), and HarfBuzz's private ones, as in "x-hbot-ABCD"."""
