@@ -29,7 +29,6 @@ SHOWN = 10
 
 BY_SUFFIX = {
     ".svg": "svg", ".png": "png", ".pdf": "pdf", ".dxf": "dxf", ".json": "json", ".csv": "polyline-csv",
-    ".scad": "polyline-scad",
 }  # fmt: skip
 """The format of a file by its suffix, without ``--format``."""
 
@@ -42,7 +41,7 @@ def text(
     out: Annotated[
         list[Path],
         opt.out(
-            "Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
+            "Write this SVG, PNG, PDF, DXF, JSON or CSV (polylines); - is standard output. Repeatable.",
             "FILE",
             show_default=False,
         ),

@@ -159,8 +159,7 @@ def test_the_title_is_the_text(tmp_path: Path) -> None:
 
 
 def test_a_map_of_a_text_shows_what_is_asked_for(tmp_path: Path) -> None:
-    root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "both", "--comb-scale", "8"))
-    assert float(root.attrib["data-scale"]) == pytest.approx(8 / EM, rel=1e-5)
+    root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "both"))
     assert "source-comb" in [path.get("class") for path in root.iter(f"{SVG}path")]
     root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "source"))
     assert next(path for path in root if path.get("class") == "source").attrib["d"]
