@@ -29,13 +29,6 @@ With "best", a single try would keep nine contours as the source has them, with 
 The last two change nothing in these contours; without them one of 3,557 is kept as the source has it.
 """
 
-APART = (0.35, 0.7)
-"""By which shares of the tolerance contours are drawn apart for the last of the smooth mode's tries.
-
-In 8,233 contours the first share saves 6 segments, the second one 6 crossings; without either there are 93 changes for
-8.
-"""
-
 RETRIES = {"plain": (0.9, 0.75), "masters": (0.9, 0.75, 0.5)}
 """Shares of the samples' tolerance for pieces that fail the certificate, of a plain outline and of masters. In the end
 the source's own segments take their place.

@@ -60,7 +60,7 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
         search.search(attempt <= len(held), early, attempt == 0)
         return search.converted(contours, tolerance)
 
-    return Fits(len(tries), fit, closer=len(held) + 1, apart=len(tries) - 1)
+    return Fits(len(tries), fit)
 
 
 def fit_smooth_masters(
