@@ -58,7 +58,7 @@ def read_state(given: Any, units_per_em: float) -> State:
     chosen: dict[str, Any] = {name: given[name] for name in names if name in given}
     chosen[sampling] = int(amount) if sampling == "count" else amount
     options = Options(**chosen, measure=given.get("measure") is True)
-    if options.corners == "smooth":
+    if options.corners == "smooth" and not options.is_fixed:
         # The page shows variant 2 pass by pass, and moves vertices: the curve has to pass through each of them.
         options = replace(options, **PRESETS["paper"])
     location = given.get("location") or {}
