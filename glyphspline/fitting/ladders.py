@@ -11,14 +11,14 @@ SMOOTH_TRIES = ((1.0, None), (1.0, 3), (0.25, 3))
 taken out as well; None for the usual number.
 
 Strands of an outline that lie on each other are crossed the less the fewer vertices they have. Of 13,333 contours of
-ten faces with corners passed, whose best results leave 207 changed, 71 are worse without the second try, 37 without the
+eleven faces with corners passed, whose best results leave 207 changed, 71 are worse without the second try, 37 without the
 third one; with corners held, three and four. Shares of 0.5, 0.1 and 0.04 besides change nothing in 8,233 contours.
 """
 
 HELD_TRY = (1.0, None)
 """Where corners are held, a try after the first one that holds them too, without fairing; later ones do not.
 
-Without it four of 13,333 contours of ten faces have more segments, and nine at a tolerance of 3/1000 em. A second one,
+Without it four of 13,333 contours of eleven faces have more segments, and nine at a tolerance of 3/1000 em. A second one,
 at a share of 0.75, saves one contour's each time, and costs two others some, and eleven.
 """
 
