@@ -49,11 +49,7 @@ from .outlines.sampling import sample as sample
 from .readers import Font as Font
 from .readers import open_font as open_font
 from .readers import open_source as open_source
-from .typesetting.along_path import along as along
-from .typesetting.bent import bend as bend
 from .typesetting.lay_out import layout as layout
-from .typesetting.path import Path as Path
-from .typesetting.path_file import open_path as open_path
 from .typesetting.placed import Layout as Layout
 from .writers.dxf import to_dxf as to_dxf
 from .writers.font.font_file import write_font as write_font

@@ -6,7 +6,7 @@ The command line, files of settings, checks of values and printed commands are m
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cache
 from itertools import chain
 from types import NoneType, UnionType
@@ -50,6 +50,7 @@ class About:
         help: a sentence. panel: heading of its group. metavar: stands for the value.
         flags: names on the command line; without any, the field's with hyphens. rule: what a value has to be.
         words: values with a name on the command line. more: further arguments of ``typer.Option``.
+        shown: whether the command line has it, and not Python alone.
     """
 
     help: str
@@ -59,6 +60,7 @@ class About:
     rule: Rule | None = None
     words: Mapping[str, Any] = field(default_factory=dict)
     more: Mapping[str, Any] = field(default_factory=dict)
+    shown: bool = True
 
 
 class Described(NamedTuple):
@@ -81,9 +83,19 @@ def option(
     return field(default=default, metadata={"about": About(help, panel, metavar, tuple(flags.split()), **about)})
 
 
+def checked(default: Any, rule: Rule | None = None) -> Any:
+    """A dataclass field that is checked as an option is, and set in Python alone: no command has it."""
+    return field(default=default, metadata={"about": About("", rule=rule, shown=False)})
+
+
 @cache
-def options_of(kind: type[Any]) -> tuple[Described, ...]:
+def options_of(kind: Any) -> tuple[Described, ...]:
     """The options of a dataclass, without those of dataclasses in it."""
+    return tuple(one for one in _checked_of(kind) if one.about.shown)
+
+
+@cache
+def _checked_of(kind: Any) -> tuple[Described, ...]:
     hints = get_type_hints(kind)
     return tuple(
         described(one.name, hints[one.name], one.metadata["about"]) for one in fields(kind) if "about" in one.metadata
@@ -98,12 +110,14 @@ def described(name: str, hint: Any, about: About) -> Described:
 
 
 def check(value: Any) -> None:
-    """Validate the options of a dataclass by their types and rules. None stands for a default that depends on a font.
+    """Validate options and :func:`checked` fields of a dataclass by their types and rules.
+
+    None stands for a default that depends on a font.
 
     Raises:
         OptionError: a value out of its range or of the wrong kind.
     """
-    for name, kind, about in options_of(value.__class__):
+    for name, kind, about in _checked_of(value.__class__):
         given = getattr(value, name)
         if given is None and getattr(type(value), name, None) is None:
             continue
@@ -116,8 +130,14 @@ def check(value: Any) -> None:
 
 
 def arguments(value: Any, default: Any) -> dict[str, list[str]]:
-    """The words of a command line that make ``value`` out of ``default``, by the names of its fields."""
+    """The words of a command line that make ``value`` out of ``default``, by the names of its fields.
+
+    Of what is set in Python alone there is only what one of the dataclass's ``presets`` sets.
+    """
     found = {}
+    if preset := _preset(value, default):
+        found["preset"] = ["--preset", preset]
+        default = replace(default, **value.presets[preset])
     known = {one.name: one for one in options_of(value.__class__)}
     for name in (one.name for one in fields(value)):
         own, usual = getattr(value, name), getattr(default, name)
@@ -128,6 +148,17 @@ def arguments(value: Any, default: Any) -> dict[str, list[str]]:
             switch = {True: [flag], False: [off]} if isinstance(own, bool) else {}
             found[name] = switch.get(own) or [flag, text_of(own, known[name].about)]
     return found
+
+
+def _preset(value: Any, default: Any) -> str | None:
+    """The preset that sets for Python alone what ``value`` has, and ``default`` has not."""
+    known = {one.name for one in options_of(value.__class__)}
+    for preset, values in getattr(value, "presets", {}).items():
+        alone = {name: given for name, given in values.items() if name not in known}
+        own, other = ({name: getattr(of, name) for name in alone} for of in (value, default))
+        if own == alone != other:
+            return str(preset)
+    return None
 
 
 def instance_arguments(face_index: int, location: Mapping[str, float]) -> list[str]:

@@ -33,8 +33,7 @@ figcaption { text-align: center; padding: 0 0 14px }
 
 LINE = """
 body { margin: 0; background: #fff }
-svg { display: block; width: 950px; height: 270px; margin: 5px 20px; overflow: visible }
-.wave { fill: none; stroke: #d33; stroke-width: 12 }
+svg { display: block; width: 950px; height: 200px; margin: 10px 20px; overflow: visible }
 """
 
 
@@ -71,17 +70,13 @@ def corners(page: Any, _: Path) -> None:
     side_by_side(page, found)
 
 
-def text(page: Any, place: Path) -> None:
-    """A line bent along a path, and its curvature."""
-    wave = "M0 0C1500 -1100 2300 -500 3300 0S5600 900 7100 -300"
-    drawing = place / "wave.svg"
-    drawing.write_text(f'<svg xmlns="http://www.w3.org/2000/svg"><path id="wave" d="{wave}"/></svg>')
-    line = gs.layout(gs.open_font(FONTS / "kouzan-kaisho.ttf"), "永善好龍永善好")
-    bent = gs.bend(line, gs.open_path(f"{drawing}#wave"), 0.2, align="center")
-    result = gs.convert(bent, gs.Options(tolerance=2.0))
-    svg = gs.to_svg(result, view_box="ink").replace("<path", f'<path d="{wave}" class="wave"/><path', 1)
-    page.set_content(f"<style>{LINE}</style>{svg}{gs.to_curvature_svg(result, vertices=False)}")
-    page.set_viewport_size({"width": 990, "height": 560})
+def text(page: Any, _: Path) -> None:
+    """A line of characters, and their curvature."""
+    line = gs.layout(gs.open_font(FONTS / "kouzan-kaisho.ttf"), "龍好AgO永善")
+    result = line.convert(gs.Options(tolerance=2.0))
+    drawings = gs.to_svg(result, view_box="ink"), gs.to_curvature_svg(result, vertices=False)
+    page.set_content(f"<style>{LINE}</style>{''.join(drawings)}")
+    page.set_viewport_size({"width": 990, "height": 440})
 
 
 def gallery(page: Any, place: Path) -> None:

@@ -12,7 +12,7 @@ from .._version import __version__
 from ..checks.kinds import KINDS, Level
 from ..errors import GlyphsplineError, OptionError
 from ..fields import LOOK, WRITTEN, About, option
-from ..typesetting.setting import Align, Direction, Place, Side
+from ..typesetting.setting import Align, Direction
 from .config import settings
 from .groups import natural, place
 from .messages import stop
@@ -210,10 +210,7 @@ class TextOptions:
     width: str | None = option(
         None, "Break lines at this width: font units, 12em, or 80mm if --size is given.", TEXT, "LENGTH"
     )
-    align: Align | None = option(
-        None, "Align lines, or the text on its path; without it start, and center on a --circle. justify widens "
-        "spaces, and spaces the letters out over a path's length.", TEXT,
-    )  # fmt: skip
+    align: Align = option("start", "Align lines; justify widens spaces.", TEXT)
     line_height: str | None = option(None, "Set the distance of baselines. Without it, the font's.", TEXT, "LENGTH")
     letter_spacing: str | None = option(None, "Add this space between letters.", TEXT, "LENGTH")
     cap_height: str | None = option(
@@ -221,23 +218,6 @@ class TextOptions:
     )
     x_height: str | None = option(None, "Set the size by the height of a small x, likewise.", LOOK, "LENGTH")
     fit_width: str | None = option(None, "Set the size by the width of all ink of the lines: 1200mm.", LOOK, "LENGTH")
-
-
-@dataclass(frozen=True)
-class PathOptions:
-    """The path that a text follows."""
-
-    path: str | None = option(
-        None,
-        "Set the text along this path of a drawing, as large as the drawing says if --size is given; else a pixel of "
-        "it is a font unit.",
-        TEXT, "SVG#ID",
-    )  # fmt: skip
-    circle: str | None = option(None, "Set the text round a circle of this diameter instead.", TEXT, "LENGTH")
-    at: Place = option("top", "Choose where on the circle the text has its middle.", TEXT)
-    bend: bool = option(False, "Deform letters along the path too, within the tolerance.", TEXT)
-    offset: str | None = option(None, "Begin the text this far along the path.", TEXT, "LENGTH")
-    side: Side = option("left", "Choose the side of the path; on the right, the text runs from its end.", TEXT)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import typer
 from ..datasets.spec import ROWS, TAKEN, DatasetSpec
 from ..errors import OptionError
 from ..extras import need
-from ..fields import WRITTEN, About
+from ..fields import About
 from ..files import make_folder, write_whole
 from ..fitting.options import PRESETS, Options
 from ..runs.spec import RunSpec
@@ -60,7 +60,6 @@ def convert(
     instance: opt.Instance,
     single: opt.SingleFonts,
     run: opt.RunOptions,
-    each: Annotated[bool, About("Write a folder in DIR for one font too.", WRITTEN)] = False,
 ) -> bool:
     """Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index.
 
@@ -71,7 +70,7 @@ def convert(
     call = Conversion(out, spec, subset, instance, run)
     if spec.masters or single != opt.SingleFonts():
         call = replace(call, spec=replace(spec, masters=True))
-        check_masters(call, single, each)
+        check_masters(call, single)
     with workplace(run.jobs, run.scheduler, call.spec) as executor:  # first: workers start while fonts are opened
         from ..runs.font_search import find_fonts
 
@@ -80,7 +79,7 @@ def convert(
             stop("no fonts found")
         if call.spec.masters:
             return convert_masters(found, call, single, executor)
-        alone = not each and found == [Path(fonts[0])] and len(fonts) == 1
+        alone = found == [Path(fonts[0])] and len(fonts) == 1
         runs = convert_fonts(found, call, executor, alone)
     if not (run.quiet or run.json_log or alone):
         say(f"written to {out}")
@@ -214,8 +213,8 @@ def atlas(
 
     if out.suffix.lower() not in (".pdf", ""):
         stop(f"--out {out}: an atlas is a PDF, and its name ends in .pdf")
-    if axis is not None and (profiles is not None or maps.corner_teeth or maps.comb != "both"):
-        stop("--profiles, --comb and --corner-teeth are of an atlas without --axis, which shows both combs")
+    if axis is not None and (profiles is not None or maps.comb != "both"):
+        stop("--profiles and --comb are of an atlas without --axis, which shows both combs")
     source = opened(font, instance, run.quiet)
     names = chosen(source, subset, run.quiet)
     profiled = None if profiles is None else source.select(text=opt.as_typed(profiles))

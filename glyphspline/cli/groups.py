@@ -24,7 +24,7 @@ Value = TypeVar("Value")
 MASTERS = {"masters", "others", "axis"}
 """Options of runs over masters, whose curves are C2."""
 
-OTHER_CURVES = {"step", "count", "variant", "margin", "fallback"}
+OTHER_CURVES = {"step", "count", "variant"}
 """Options of the interpolation, which fonts' own curves do without."""
 
 
@@ -64,7 +64,7 @@ class PresetOption:
     preset: Preset | None = option(
         None,
         "Set several options: type keeps corners, in the fewest points; brush is smooth, within 3/1000 em; "
-        "paper is smooth, with margin 0. Options given beside it win.",
+        "paper is smooth and passes through corners, with margin 0. Options given beside it win.",
         CORNERS,
     )  # fmt: skip
 
@@ -115,12 +115,12 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
         OptionError: a value is out of its range; the message names the option.
     """
     kind: Any = type(base)
-    if kind is Options:
-        given = {**PRESETS.get(given.get("preset", ""), {}), **given}
-        given = {**for_fonts(given), **given}
     known = {one.name: one for one in options_of(kind)}
     usual = kind()
     found = {one.name: value for one in fields(kind) if (value := getattr(base, one.name)) != getattr(usual, one.name)}
+    if kind is Options:
+        preset = PRESETS.get(given.get("preset", ""), {})
+        found |= {**for_fonts({**preset, **given}), **preset}
     for name in (one.name for one in fields(kind) if shown(one.name)):
         if is_dataclass(value := getattr(base, name)):
             found[name] = collected(value, shown, given)

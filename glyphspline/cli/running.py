@@ -121,14 +121,13 @@ def opened(font: Path, instance: opt.Instance, quiet: bool) -> AnySource:
     return source
 
 
-def check_masters(call: Conversion, single: opt.SingleFonts, each: bool) -> None:
+def check_masters(call: Conversion, single: opt.SingleFonts) -> None:
     """Stop if the options of a run over masters clash."""
     if bool(single.others) != bool(single.axis):
         stop("--from FONT and --axis TAG=A:B go together")
     for name, given, why in (
         ("location", call.instance.location, "masters are of the whole design space"),
         ("scheduler", call.run.scheduler, "masters are converted on this machine"),
-        ("each", each, "a run over masters has one folder"),
     ):
         if given:
             stop(f"--{name} is not for --masters: {why}")

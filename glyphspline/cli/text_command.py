@@ -1,4 +1,4 @@
-"""The command ``text``: sets a text on lines or along a path, and writes drawings."""
+"""The command ``text``: sets a text on lines, and writes drawings."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path as File
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -22,7 +22,6 @@ from .running import opened
 
 if TYPE_CHECKING:
     from ..readers import AnySource
-    from ..typesetting.path import Path
     from ..typesetting.placed import Layout
 
 SHOWN = 10
@@ -30,7 +29,6 @@ SHOWN = 10
 
 BY_SUFFIX = {
     ".svg": "svg", ".png": "png", ".pdf": "pdf", ".dxf": "dxf", ".json": "json", ".csv": "polyline-csv",
-    ".scad": "polyline-scad",
 }  # fmt: skip
 """The format of a file by its suffix, without ``--format``."""
 
@@ -41,15 +39,14 @@ LENGTH = re.compile(r"(-?\d{1,9}(?:\.\d{1,9})?)([a-z]*)")
 def text(
     font: opt.FontFile,
     out: Annotated[
-        list[File],
+        list[Path],
         opt.out(
-            "Write this SVG, PNG, PDF, DXF, JSON, CSV (polylines) or SCAD; - is standard output. Repeatable.",
+            "Write this SVG, PNG, PDF, DXF, JSON or CSV (polylines); - is standard output. Repeatable.",
             "FILE",
             show_default=False,
         ),
     ],
     lines: opt.TextOptions,
-    along: opt.PathOptions,
     options: Annotated[Options, without("measure")],
     settings: Annotated[Settings, without("size")],
     maps: Maps,
@@ -61,7 +58,7 @@ def text(
     ] = None,
     instance: opt.Instance,
 ) -> bool:
-    """Set a text: shaped by HarfBuzz, on one line, on several or along a path, as SVG, DXF and other drawings.
+    """Set a text: shaped by HarfBuzz, on one line or several, as SVG, DXF and other drawings.
 
     Each glyph is fitted once, however often it occurs.
     """
@@ -76,15 +73,11 @@ def text(
 
         content = words_of(words, lines.text_file)
         source = opened(font, instance, run.quiet)
-        em, settings = source.metrics.units_per_em, replace(settings, look=sized(settings.look, lines, source))
-        look = settings.look
-        curve = curve_of(lines, along, em, look)
-        layout = laid_out(source, content, lines, curve is not None, look)
-        drawn = draw(TextJob(
-            layout, options, names, replace(settings, title=layout.text), drawings.each_glyph, curve, along.bend,
-            lines.align or ("center" if along.circle else "start"), along.side,
-            length("offset", along.offset, em, look) or 0.0, lines.fit_width, maps,
-        ), executor)  # fmt: skip
+        settings = replace(settings, look=sized(settings.look, lines, source))
+        layout = laid_out(source, content, lines, settings.look)
+        settings = replace(settings, title=layout.text)
+        job = TextJob(layout, options, names, settings, drawings.each_glyph, lines.fit_width, maps)
+        drawn = draw(job, executor)
     for (file, _), drawing in zip(files, drawn.contents, strict=True):  # nothing is written if one of them fails
         put(file, drawing)
     remarks = [*remarks_on(layout), *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note)]
@@ -93,7 +86,7 @@ def text(
     return bool(layout.missing or not drawn.complete)
 
 
-def formats_of(files: Sequence[File], name: str | None) -> Iterator[tuple[File, str]]:
+def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, str]]:
     """The name of the format of each file: ``name``, or by its suffix.
 
     Raises:
@@ -116,7 +109,7 @@ def formats_of(files: Sequence[File], name: str | None) -> Iterator[tuple[File, 
         yield file, known
 
 
-def words_of(words: str | None, file: File | None) -> str:
+def words_of(words: str | None, file: Path | None) -> str:
     """The text: the argument, or that of a file; - is standard input.
 
     Raises:
@@ -155,37 +148,8 @@ def sized(look: Appearance, lines: opt.TextOptions, source: AnySource) -> Appear
     return look
 
 
-def curve_of(lines: opt.TextOptions, along: opt.PathOptions, em: float, look: Appearance) -> Path | None:
-    """The path that the text follows, in font units; None for text on lines.
-
-    Raises:
-        GlyphsplineError: it cannot be read, or options clash.
-    """
-    if along.circle is None and along.at != "top":
-        raise GlyphsplineError("--at is for text on a --circle")
-    if along.path is None and along.circle is None:
-        for name in ("bend", "offset", "side"):
-            if getattr(along, name) != getattr(opt.PathOptions, name):
-                raise GlyphsplineError(f"--{name} is for text on a --path")
-        return None
-    if along.path is not None and along.circle is not None:
-        raise GlyphsplineError("give a --path or a --circle, not both")
-    for name in ("width", "fit_width"):
-        if getattr(lines, name) is not None:
-            raise GlyphsplineError(f"--{name.replace('_', '-')} is for lines; text on a --path is one")
-    if lines.direction in ("ttb", "btt"):
-        raise GlyphsplineError("columns cannot stand on a --path")
-    if along.path is None:
-        from ..typesetting.path import Path
-
-        return Path.circle(length("circle", along.circle, em, look) or 0.0, along.at)
-    from ..typesetting.path_file import open_path
-
-    return open_path(along.path).scaled(pixel(em, look))
-
-
-def laid_out(source: AnySource, text: str, lines: opt.TextOptions, on_path: bool, look: Appearance) -> Layout:
-    """The text on its lines, or on one for a path.
+def laid_out(source: AnySource, text: str, lines: opt.TextOptions, look: Appearance) -> Layout:
+    """The text on its lines.
 
     Raises:
         GlyphsplineError: it cannot be laid out.
@@ -198,15 +162,8 @@ def laid_out(source: AnySource, text: str, lines: opt.TextOptions, on_path: bool
         source, text, fallbacks=[open_source(file) for file in lines.fallbacks or ()], features=lines.features,
         script=lines.script, language=lines.language, direction=lines.direction,
         width=length("width", lines.width, em, look), line_height=length("line_height", lines.line_height, em, look),
-        align="start" if on_path else lines.align or "start",
-        letter_spacing=length("letter_spacing", lines.letter_spacing, em, look) or 0.0,
+        align=lines.align, letter_spacing=length("letter_spacing", lines.letter_spacing, em, look) or 0.0,
     )  # fmt: skip
-
-
-def pixel(em: float, look: Appearance) -> float:
-    """Font units in a user unit of a path's drawing, which is 1/96 inch; without ``--size``, one."""
-    found = look.scale(1.0, em)
-    return 1.0 if found is None else INCHES["px"] / (found[0] * INCHES[found[1]])
 
 
 def length(name: str, text: str | None, em: float, look: Appearance) -> float | None:
@@ -223,9 +180,10 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
         raise OptionError(f"{option} is a length in font units, em, {', '.join(INCHES)}, not {text!r}")
     value, unit = float(found[1]), found[2]
     if unit in INCHES:
-        if look.em is None:
+        drawn = look.scale(1.0, em)
+        if drawn is None:
             raise OptionError(f"{option} {text} needs --size, --cap-height or --x-height: how large is an em?")
-        return value * INCHES[unit] / INCHES["px"] * pixel(em, look)
+        return value * INCHES[unit] / (drawn[0] * INCHES[drawn[1]])
     return value * em if unit else value
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..types import FloatArray, IntArray
+from ..types import FloatArray
 
 AT_END = 1e-9
 """Parameter distance within which a root is an end of its piece, but for rounding."""
@@ -33,19 +33,6 @@ def split(pieces: FloatArray, x: float | FloatArray = 0.5) -> tuple[FloatArray, 
         left.append(pieces[..., 0, :])
         right.append(pieces[..., -1, :])
     return np.stack(left, axis=-2), np.stack(right[::-1], axis=-2)
-
-
-def sections(pieces: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
-    """The parts of pieces (m, degree + 1, k) between two parameters of each (m,); the second one is larger."""
-    right = split(pieces, first[:, None, None])[1]
-    return split(right, ((last - first) / (1 - first))[:, None, None])[0]
-
-
-def divided(pieces: FloatArray, counts: IntArray) -> tuple[FloatArray, IntArray]:
-    """Each of (m, degree + 1, k) pieces cut evenly into (m,) parts: all parts in order, and which piece each is of."""
-    of = np.repeat(np.arange(len(counts)), counts)
-    number = np.arange(len(of)) - (np.cumsum(counts) - counts)[of]
-    return sections(pieces[of], number / counts[of], (number + 1) / counts[of]), of
 
 
 def roots_inside(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:

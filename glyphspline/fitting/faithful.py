@@ -9,16 +9,14 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ..curves.crossings import meetings
 from ..errors import GlyphsplineError
-from ..outlines.contour_arrays import ContourArrays, joined, lines_and_cubics, offsets_of
+from ..outlines.contour_arrays import ContourArrays, lines_and_cubics, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, IntArray
-from .ladders import APART
 from .measures import distance_columns, with_geometry
 from .options import Options
 from .results import ConvertedContours, assembled, not_fitted
-from .topology import Changes, changed, changes, drawn_apart
+from .topology import Changes, changed, changes
 
 
 class Fits(NamedTuple):
@@ -27,9 +25,6 @@ class Fits(NamedTuple):
     Attributes:
         tries: how many fits there are; later ones are closer to the source.
         fit: from contours, and the number of a fit, to their results, before their geometry is measured.
-        closer: the number of the first fit that is closer.
-        apart: the number of the fit of contours that are drawn apart, after which that is tried; 0 if it is not.
-            Contours that touch in the source are drawn apart at once: closer fits do not help.
         keeps_collapsed, keeps_crossing: whether contours that collapse, or cross, in every fit are kept as they are in
             the source.
         instead: fits of another mode, for contours that cross in every fit of this one.
@@ -37,8 +32,6 @@ class Fits(NamedTuple):
 
     tries: int
     fit: Callable[[ContourArrays, int], ConvertedContours]
-    closer: int = 1
-    apart: int = 0
     keeps_collapsed: bool = True
     keeps_crossing: bool = False
     instead: Fits | None = None
@@ -113,8 +106,8 @@ def faithful(
 ) -> ConvertedContours:
     """Fit contours; those that cross or collapse where their source does not are fitted again.
 
-    They are fitted more closely, then drawn apart, then fitted in another mode, and in the end kept as they are in the
-    source, as far as the mode has it: see :class:`Search`. What still crosses in the best result is flagged.
+    They are fitted more closely, then in another mode, and in the end kept as they are in the source, as far as the
+    mode has it: see :class:`Search`. What still crosses in the best result is flagged.
 
     Args:
         contours: of all glyphs. glyphs: (G + 1,) where the contours of each glyph begin.
@@ -136,42 +129,21 @@ def faithful(
     def is_outside(result: Part) -> bool:
         return result[0].measures["within_tolerance"][result[1]] is False
 
-    def fitted(given: ContourArrays, which: list[int], turn: int, of: Fits = fits) -> ConvertedContours:
-        """A fit of contours that are those numbered ``which``, or stand for them."""
+    def fitted(of: Fits, turn: int, which: list[int]) -> list[Part]:
         try:
-            return of.fit(given, turn)
+            return _parts(of.fit(contours.chosen(which), turn))
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else which[error.contour]
             raise
 
-    def closer(turn: int, which: list[int], of: Fits = fits) -> list[Part]:
-        return _parts(fitted(contours.chosen(which), which, turn, of))
-
-    def apart(near: Sequence[Part], share: float, which: list[int]) -> list[Part]:
-        """The closest fits of contours drawn apart where those of ``near`` cross. Their distance is not measured."""
-        shift, moved = share * tolerance, []
-        for a, b in search.ranges(which):
-            written = assembled(near[a:b]).curves.rounded(options.precision)
-            drawn = drawn_apart(contours.part(a, b), written, shift, tolerance)
-            moved.append(drawn.chosen([c - a for c in which if a <= c < b]))
-        found = fitted(joined(moved), which, fits.apart)
-        bounds = [bound + shift for bound in found.measures["deviation_bound"]]
-        measures = {**found.measures, **distance_columns([None] * len(bounds), bounds, tolerance)}
-        return _parts(replace(found, source=contours.chosen(which), measures=measures))
-
     search = Search(glyphs, _parts(fits.fit(contours, 0)), compare, is_outside)
-    if search.found.any():
-        touching = _touching(contours, search) if fits.apart else np.zeros(len(search.tried), dtype=np.bool_)
-        for turn in range(1, fits.tries):
-            search.attempt(changed(search.found) & ~(touching & (turn >= fits.closer)), partial(closer, turn))
-            near = list(search.tried)
-            for share in APART if turn == fits.apart else ():
-                search.attempt(changed(search.found[:1]), partial(apart, near, share))
+    for turn in range(1, fits.tries):
+        search.attempt(changed(search.found), partial(fitted, fits, turn))
     own_best, instead = list(search.best), fits.instead
     if instead is not None:
         for turn in range(instead.tries):
             search.go_back()
-            search.attempt(changed(search.kept[:1]), partial(closer, turn, of=instead))
+            search.attempt(changed(search.kept[:1]), partial(fitted, instead, turn))
     fits_best = list(search.best)
     crosses, collapsed = search.kept > 0
     keeps_crossing = fits.keeps_crossing or (instead is not None and instead.keeps_crossing)
@@ -190,16 +162,6 @@ def faithful(
 
 def _parts(found: ConvertedContours) -> list[Part]:
     return [(found, k) for k in range(len(found))]
-
-
-def _touching(contours: ContourArrays, search: Search[Part]) -> BoolArray:
-    """(C,) whether a contour that crosses touches itself or others in the source."""
-    found = np.zeros(len(search.tried), dtype=np.bool_)
-    for a, b in search.ranges(np.flatnonzero(search.found[0] > 0).tolist()):
-        source = contours.part(a, b)
-        met, _ = meetings(all_cubics(source), source.offsets, np.array([0, b - a]))
-        found[a + met[~np.isnan(met[:, 4]), :2].astype(np.int64)] = True
-    return found
 
 
 def as_source(contours: ContourArrays, options: Options, tolerance: float) -> ConvertedContours:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from ..errors import OptionError
-from ..fields import CLOSENESS, CORNERS, METHOD, WRITTEN, check, option, positive, whole
+from ..fields import CLOSENESS, CORNERS, METHOD, WRITTEN, check, checked, option, positive, whole
 from ..interpolation.method import Fallback, Method
 from ..outlines.sampling import CORNER_ANGLE, MAX_RATIO, check_sampling
 
@@ -42,14 +42,17 @@ class Options:
         corners: "sharp" splits at corners, "smooth" is one closed C2 curve a contour (the paper). None is "sharp", with
             ``step`` or ``count`` "smooth"; it is replaced by what it stands for.
         hold_corners: in "smooth", hold the control point of each corner at the corner: the curve passes it on the
-            inside and bends once there. False interpolates every vertex, as the paper does.
+            inside and bends once there, so that no rings stand beside it. False interpolates every vertex, as the
+            paper does.
         corner_angle: the turn in degrees from which a join of segments is a corner: a vertex in "smooth", where arcs
             end in "sharp".
         continuity: of "sharp" between corners: "c2" is one spline of variant 2; "g2" cubics as fonts store them, no
             more than the source has, with points where it has them, whose tangents and curvatures meet on the grid of
             ``precision``: variant 2 does not run.
         effort: "fast" takes few fits, "best" seeks the fewest vertices.
-        margin: c of Lemma 2. fallback: what to do where Lemma 2 has no interval, "knot" or "peak".
+        margin: c of Lemma 2, 0 to 0.5, by which search intervals shrink: larger ones guarantee a better rate of
+            convergence. fallback: what footpoints do where chords are too uneven for Lemma 2 to have an interval,
+            "knot" or "peak".
         max_ratio: bound on the ratio of adjacent chords.
         precision: decimals written, 0 to 9.
         residual_tolerance: the solver's, in font units; None is half of the last decimal written.
@@ -70,6 +73,8 @@ class Options:
         Traceback (most recent call last):
         glyphspline.errors.OptionError: give one of tolerance, step and count, not step and count
     """
+
+    presets: ClassVar = PRESETS
 
     variant: int = option(Method.variant, "Choose how footpoints are sought (Table 1).", METHOD, "0…4")
     tolerance: float | None = option(
@@ -93,12 +98,7 @@ class Options:
         CORNERS,
     )  # fmt: skip
     corner_angle: float = option(CORNER_ANGLE, "Set how sharp a turn counts as a corner.", CORNERS, "DEGREES")
-    hold_corners: bool = option(
-        True,
-        "Hold the control point of each corner at the corner (smooth), so that no rings stand beside it; or pass "
-        "through the corner, as the paper does.",
-        CORNERS, flags="--hold-corners/--pass-corners",
-    )  # fmt: skip
+    hold_corners: bool = checked(True)
     continuity: Continuity = option(
         "c2",
         "Fit between corners one C2 spline (c2), or the fewest cubics whose tangents and curvatures meet, as fonts "
@@ -106,15 +106,8 @@ class Options:
         CORNERS,
     )  # fmt: skip
     effort: Effort = option("fast", "Find the fewest points, which takes longer (best), or few (fast).", CLOSENESS)
-    margin: float = option(
-        0.02,
-        "Shrink search intervals by this margin, 0 to 0.5 (c of Lemma 2): a better guaranteed rate of "
-        "convergence.",
-        METHOD, "C",
-    )  # fmt: skip
-    fallback: Fallback = option(
-        "peak", "Choose what footpoints do where chords are too uneven for Lemma 2 to have an interval.", METHOD
-    )
+    margin: float = 0.02
+    fallback: Fallback = "peak"
     max_ratio: float = MAX_RATIO
     precision: int = option(2, "Write this number of decimals, 0 to 9.", WRITTEN, "N", rule=whole(0, 9))
     residual_tolerance: float | None = None

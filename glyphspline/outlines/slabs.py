@@ -7,14 +7,14 @@ neighbouring slabs that share a part of the horizontal between them hang togethe
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ..types import BoolArray, FloatArray, IntArray
-from .contour_arrays import Polylines
-from .polygons import box_pairs
+from .contour_arrays import Polylines, offsets_of
 
 
 class Regions(NamedTuple):
@@ -192,6 +192,18 @@ class Stretches:
         thick: BoolArray = areas > self.apart * (high - low).max(axis=0)
         thick[labels[0]] = False
         return thick
+
+
+def box_pairs(low: FloatArray, high: FloatArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Pairs of boxes that overlap or touch, each once, a million candidates at a time; of their corners (n, 2)."""
+    order = np.argsort(low[:, 0], kind="stable")
+    counts = np.searchsorted(low[order, 0], high[order, 0], side="right") - np.arange(len(order)) - 1
+    for part in np.array_split(np.arange(len(order)), 1 + int(counts.sum()) // 1_000_000):
+        first = np.repeat(part, counts[part])
+        behind = np.arange(len(first)) - np.repeat(offsets_of(counts[part])[:-1], counts[part])
+        i, j = order[first], order[first + 1 + behind]
+        near = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
+        yield i[near], j[near]
 
 
 def _sides(lines: Polylines) -> FloatArray:

@@ -20,13 +20,11 @@ class Unmatched:
     """A glyph that is not in all fonts, or whose outlines cannot be matched.
 
     Attributes:
-        name: in the default font. error: the reason. outlines: those that there are, in the order of the fonts; see
-            :func:`..writers.svg.unmatched.to_unmatched_svg`.
+        name: in the default font. error: the reason.
     """
 
     name: str
     error: GlyphsplineError
-    outlines: tuple[Outline, ...] = ()
 
 
 def axis_of(words: str, count: int) -> tuple[DesignAxis, list[float]]:
@@ -67,14 +65,12 @@ def masters_of_fonts(
     design, values = axis_of(axis, len(sources))
     default = sources[0]
     for name in default.glyph_names if glyphs is None else glyphs:
-        outlines: list[Outline] = []
         try:
-            outlines.append(default.outline(name))
-            for source in sources[1:]:
-                outlines.append(source.outline(_partner(outlines[0], source)))
-            found: Masters | Unmatched = match_masters(outlines, values, design)
+            first = default.outline(name)
+            others = [source.outline(_partner(first, source)) for source in sources[1:]]
+            found: Masters | Unmatched = match_masters([first, *others], values, design)
         except GlyphsplineError as error:
-            found = Unmatched(name, error.locate(glyph=name), tuple(outlines))
+            found = Unmatched(name, error.locate(glyph=name))
         yield found
 
 

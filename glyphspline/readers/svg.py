@@ -186,13 +186,9 @@ def viewport(element: Any) -> FloatArray:
 
 
 def shapes(
-    element: Any, matrix: FloatArray, filled: bool, left_out: Counter[str], depth: int = 0, everywhere: bool = False
+    element: Any, matrix: FloatArray, filled: bool, left_out: Counter[str], depth: int = 0
 ) -> Iterator[tuple[Any, FloatArray, bool]]:
-    """Each shape with the (3, 3) matrix to font space, and whether it is filled.
-
-    Those that are only defined or not displayed, and lines, are among them with ``everywhere``, and the matrix is from
-    the root's :func:`viewport`.
-    """
+    """Each shape with the (3, 3) matrix to font space, and whether it is filled."""
     if depth > DEEPEST:
         raise GlyphsplineError(f"groups nested more than {DEEPEST} deep")
     if not isinstance(element.tag, str):
@@ -200,17 +196,17 @@ def shapes(
     tag, style = element.tag.rpartition("}")[2], styles(element)
     if tag in LEFT_OUT:
         left_out[LEFT_OUT[tag]] += 1
-    if not everywhere and (tag in NOT_DRAWN or style.get("display") == "none"):
+    if tag in NOT_DRAWN or style.get("display") == "none":
         return
     if element.get("transform"):
         matrix = matrix @ _transform(element.get("transform"))
-    if tag == "svg" and (depth or everywhere):
+    if tag == "svg" and depth:
         matrix = matrix @ viewport(element)
     filled = style["fill"] not in ("none", "transparent") if "fill" in style else filled
-    if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline") or (everywhere and tag == "line"):
+    if tag in ("path", "rect", "circle", "ellipse", "polygon", "polyline"):
         yield element, matrix, filled
     for child in element:
-        yield from shapes(child, matrix, filled, left_out, depth + 1, everywhere)
+        yield from shapes(child, matrix, filled, left_out, depth + 1)
 
 
 def _transform(text: str) -> FloatArray:
@@ -249,16 +245,14 @@ def path_data(element: Any) -> str:
         rx, ry = (float(element.get(key)) for key in (("r", "r") if tag == "circle" else ("rx", "ry")))
         ends = ((cx, cy + ry), (cx - rx, cy), (cx, cy - ry), (cx + rx, cy))
         return f"M{cx + rx!r},{cy!r}" + "".join([f"A{rx!r},{ry!r} 0 0 1 {x!r},{y!r}" for x, y in ends]) + "Z"
-    if tag == "line":
-        return "M{},{}L{},{}".format(*[element.get(key, 0) for key in ("x1", "y1", "x2", "y2")])
     points = element.get("points") or ""
     return f"M{points}{'Z' if tag == 'polygon' else ''}" if points.strip() else ""
 
 
-def draw_path(data: str, matrix: FloatArray, pen: Any, arc: float = ARC) -> None:
+def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
     """Draw path data subpath by subpath: svgpathtools would join two that meet in a point.
 
-    An open subpath ends with ``endPath``. ``arc``: degrees of an elliptic arc that become one cubic.
+    An open subpath ends with ``endPath``.
     """
     from svgpathtools import Arc, parse_path  # as above
 
@@ -276,7 +270,7 @@ def draw_path(data: str, matrix: FloatArray, pen: Any, arc: float = ARC) -> None
         pen.moveTo(placed([start])[0])
         end = start
         for segment in parse_path(subpath, current_pos=here):
-            for to in arc_cubics(segment, arc) if isinstance(segment, Arc) else [segment.bpoints()[1:]]:
+            for to in arc_cubics(segment) if isinstance(segment, Arc) else [segment.bpoints()[1:]]:
                 (pen.lineTo, pen.qCurveTo, pen.curveTo)[len(to) - 1](*placed(to))
             end = segment.end
         closed = subpath.rstrip(" \t\r\n\f,").endswith(("Z", "z"))
@@ -284,9 +278,9 @@ def draw_path(data: str, matrix: FloatArray, pen: Any, arc: float = ARC) -> None
         here = start if closed else end
 
 
-def arc_cubics(arc: Any, degrees: float) -> Iterator[list[complex]]:
-    """The three points that each cubic of an elliptic arc adds; a cubic spans at most ``degrees``."""
-    pieces = max(1, int(np.ceil(abs(arc.delta) / degrees)))
+def arc_cubics(arc: Any) -> Iterator[list[complex]]:
+    """The three points that each cubic of an elliptic arc adds."""
+    pieces = max(1, int(np.ceil(abs(arc.delta) / ARC)))
     handle = 4 / 3 * np.tan(np.radians(arc.delta) / pieces / 4) / np.radians(arc.delta)
     for k in range(pieces):
         t0, t1 = k / pieces, (k + 1) / pieces

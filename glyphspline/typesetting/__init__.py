@@ -1,1 +1,1 @@
-"""Text: shaped, broken into lines, and set along a path."""
+"""Text: shaped, broken into lines, and put in place."""

@@ -9,15 +9,11 @@ from functools import cached_property
 from typing import Any, Literal, NamedTuple, TypeAlias
 
 from ..errors import OptionError, is_number, require
-from ..fields import Rule, check, option, positive
+from ..fields import Rule, check, checked, positive
 
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
 Align: TypeAlias = Literal["start", "center", "end", "justify"]
 Orientation: TypeAlias = Literal["mixed", "upright"]
-Side: TypeAlias = Literal["left", "right"]
-"""The side of a path that letters are on."""
-Place: TypeAlias = Literal["top", "bottom"]
-"""Where on a circle a text has its middle."""
 
 LANGUAGE = re.compile(r"(?:[A-Za-z]{2,3}|[A-Za-z]{5,8}|x)(?:-[A-Za-z0-9]{1,8})*")
 """Language tags (BCP 47), and HarfBuzz's private ones, as in "x-hbot-ABCD"."""
@@ -98,14 +94,14 @@ class Setting:
     """The typographic arguments of :func:`.lay_out.layout`, by the same names."""
 
     features: str = ""
-    script: str | None = option(None, "Of all text.", rule=SCRIPT)
-    language: str | None = option(None, "Of all text.", rule=TAG)
-    direction: Direction | None = option(None, "Of paragraphs, or of columns.")
-    width: float | None = option(None, "Of lines.", rule=LENGTH)
-    align: Align = option("start", "Of lines.")
-    line_height: float | None = option(None, "From baseline to baseline.", rule=LENGTH)
-    orientation: Orientation = option("mixed", "Of characters in columns.")
-    letter_spacing: float = option(0.0, "Between clusters.", rule=Rule("a finite length in font units", is_number))
+    script: str | None = checked(None, SCRIPT)
+    language: str | None = checked(None, TAG)
+    direction: Direction | None = checked(None)
+    width: float | None = checked(None, LENGTH)
+    align: Align = checked("start")
+    line_height: float | None = checked(None, LENGTH)
+    orientation: Orientation = checked("mixed")
+    letter_spacing: float = checked(0.0, Rule("a finite length in font units", is_number))
     parsed_features: tuple[Feature, ...] = field(init=False)
 
     def __post_init__(self) -> None:

@@ -155,7 +155,7 @@ def font_facts(work: Work) -> dict[str, Any]:
 
     def choices(**given: Any) -> dict[str, Any]:
         options = Options(**given)
-        chosen = {name: getattr(options, name) for name in ("margin", "corners", "continuity", "effort")}
+        chosen = {name: getattr(options, name) for name in ("corners", "continuity", "effort")}
         return chosen | {"sampling": "tolerance", "amount": options.tolerance_for(work.em)}
 
     return {

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Any, Literal, get_args
 
 from ..errors import GlyphsplineError, is_number, require, require_choice
-from ..fitting.options import Options
+from ..fitting.options import PRESETS, Options
 from ..readers import Font
 
 Sampling = Literal["tolerance", "step", "count"]
@@ -54,12 +54,13 @@ def read_state(given: Any, units_per_em: float) -> State:
         amount = float(min(max(round(amount), 3), MOST_VERTICES))
     else:
         amount = float(f"{max(amount, FINEST[sampling] * units_per_em):.6g}")  # as the command has it
-    names = ("variant", "corners", "continuity", "effort", "fallback")
+    names = ("variant", "corners", "continuity", "effort")
     chosen: dict[str, Any] = {name: given[name] for name in names if name in given}
     chosen[sampling] = int(amount) if sampling == "count" else amount
-    margin = min(max(_number(given, "margin", Options.margin), 0.0), 0.25)
-    # The page shows variant 2 pass by pass, and moves vertices: the curve has to pass through each of them.
-    options = Options(**chosen, margin=margin, hold_corners=False, measure=given.get("measure") is True)
+    options = Options(**chosen, measure=given.get("measure") is True)
+    if options.corners == "smooth" and not options.is_fixed:
+        # The page shows variant 2 pass by pass, and moves vertices: the curve has to pass through each of them.
+        options = replace(options, **PRESETS["paper"])
     location = given.get("location") or {}
     if not isinstance(location, Mapping):
         raise GlyphsplineError("location is an object of axis tags and values")

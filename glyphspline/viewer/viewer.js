@@ -40,7 +40,6 @@
   const state = { glyph: font.first, location: {}, ...font.defaults, moved: [], measure: false };
   /* The page opens on the command line's defaults. */
   for (const name of CHOICES) choiceOf(name, state[name]).checked = true;
-  at("margin").value = String(state.margin);
   const layers = new Set(["source", "result", "vertices"]);
   let along = null; // the instance at the sliders' location, while the glyph is shown along the axes
   let compared = null, steps = null, playing = null;
@@ -247,13 +246,11 @@
   const read = () => {
     for (const name of CHOICES) state[name] = document.querySelector(`[name=${name}]:checked`).value;
     state.variant = +state.variant;
-    state.margin = +at("margin").value;
-    at("margin-out").textContent = state.margin.toFixed(3);
     const sharp = state.corners === "sharp", fitted = sharp && state.continuity === "g2"; // G2 cubics: nothing is iterated
     at("continuities").disabled = !sharp;
     at("efforts").disabled = state.sampling !== "tolerance";
     if (fitted && at("compare").checked) at("compare").click(); // before it is disabled
-    for (const id of ["variants", "margin", "compare"]) at(id).disabled = fitted;
+    for (const id of ["variants", "compare"]) at(id).disabled = fitted;
     at("compare").disabled ||= at("along").checked;
     at("variant-words").textContent = fitted ? "no variant runs: G2 cubics are fitted, nothing is iterated" : WORDS[state.variant];
     amount();
@@ -275,19 +272,18 @@
   }
   for (const input of document.querySelectorAll("[name=preset]")) {
     input.addEventListener("change", () => {
-      const { amount: exact, margin, ...choices } = font.presets[input.value];
+      const { amount: exact, ...choices } = font.presets[input.value];
       for (const [key, value] of Object.entries(choices)) choiceOf(key, value).checked = true;
-      at("margin").value = String(margin);
       at("amount").value = String(shareOf("tolerance", exact));
       state.moved = [];
       read();
       ask();
     });
   }
-  for (const input of document.querySelectorAll(`${CHOICES.map((name) => `[name=${name}]`)}, #margin, #amount`)) {
+  for (const input of document.querySelectorAll(`${CHOICES.map((name) => `[name=${name}]`)}, #amount`)) {
     input.addEventListener(input.type === "radio" ? "change" : "input", () => {
       if (input.name === "sampling") at("amount").value = START[input.value];
-      if (input.name !== "variant" && input.id !== "margin") state.moved = []; // these sample anew
+      if (input.name !== "variant") state.moved = []; // these sample anew
       read();
       ask();
     });

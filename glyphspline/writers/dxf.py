@@ -7,7 +7,7 @@ What is written, so that all programs read the same curve:
   control point equal, flags (group code 70) planar only. The closed and the periodic flag are left away: with either of
   them one program or another wraps the control points once more, replaces the knots, or reads no curve.
   docs/formats.md says which. Knots have the scale of the drawing.
-- ``--dxf arcs``: each straight line is a LINE, and what is between corners and lines a SPLINE. The entities of a
+- "arcs": each straight line is a LINE, and what is between corners and lines a SPLINE. The entities of a
   contour follow each other, end in the same coordinates, and are a GROUP.
 - Spurs are left out, which solid modellers refuse: lines that run back over the line before them.
 - Coordinates are doubles in full, not rounded to ``precision``.

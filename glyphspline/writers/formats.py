@@ -138,7 +138,6 @@ OURS = {each.name: each for each in (
     Format("json", ".json", _lazy("json_file:json_text")),
     Format("polyline", ".json", _lazy("polyline_files:polyline_json")),
     Format("polyline-csv", ".csv", _lazy("polyline_files:polyline_csv")),
-    Format("polyline-scad", ".scad", _lazy("polyline_files:polyline_scad")),
     Format("dxf", ".dxf", _lazy("dxf:write"), extra="cad"),
 )}  # fmt: skip
 """Our formats by name, in the order in which a run writes and lists them."""

@@ -1,26 +1,21 @@
-"""Results as polygons within a certified distance of their curves: JSON, CSV and OpenSCAD."""
+"""Results as polygons within a certified distance of their curves: JSON and CSV."""
 
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Sequence
 from dataclasses import dataclass
-from json.encoder import encode_basestring_ascii as quoted
 
 import numpy as np
 
 from ..fitting.results import GlyphResult
 from ..outlines.outline import Outline
-from ..outlines.polygons import flattened, polygons_of, uncrossed
+from ..outlines.polygons import flattened, polygons_of
 from ..types import FloatArray, counted, rounded_up
 from .json_file import as_text, head
 from .settings import RELATIVE_FLATNESS, Settings
 
 RESERVE = 1e-3
 """Share of the flatness that rounding to decimals may use."""
-
-_NOT_NAME = re.compile(r"[^A-Za-z0-9_]")
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,64 +77,6 @@ def polyline_csv(glyph: GlyphResult, settings: Settings) -> str:
     return "\n".join(lines) + "\n"
 
 
-def polyline_scad(glyph: GlyphResult, settings: Settings) -> str:
-    """The polygons as a module of OpenSCAD, which the file also calls; ``use <file>`` only defines it.
-
-    OpenSCAD fills the paths of one ``polygon()`` by the even-odd rule, which would make holes where contours overlap.
-    So contours are cut where they cross, and joined to loops that do not; each outer loop is a ``polygon()`` with its
-    own holes as further paths, and the ink is their union: that of the nonzero rule.
-    """
-    polygons, bound = _written(glyph, settings)
-    polygons = uncrossed(polygons)
-    name = f"glyph_{_NOT_NAME.sub('_', glyph.outline.name)}"
-    unit = settings.unit or "font units"
-    codes = "".join(f" U+{code:04X}" for code in glyph.outline.unicodes)
-    lines = [
-        f"// Glyph {quoted(glyph.outline.name)}{codes}, in {unit}: {settings.scale:.9g} a font unit.",
-        f"// Polygons within {bound:g} of the curves.",
-        f"function {name}_advance() = {glyph.outline.advance * settings.scale!r};",
-        f"module {name}() {{",
-        "  union() {",
-    ]
-    for outer, holes in outers_and_holes(polygons):
-        own = [polygons[c] for c in (outer, *holes)]
-        points = ",".join(f"[{x!r},{y!r}]" for x, y in np.concatenate(own).tolist())
-        ends = np.cumsum([len(polygon) for polygon in own]).tolist()
-        ranges = zip([0, *ends], ends, strict=False)
-        paths = ",".join(f"[for (i = [{first}:{end - 1}]) i]" for first, end in ranges)
-        lines.append(f"    polygon(points = [{points}], paths = [{paths}]);")
-    return "\n".join([*lines, "  }", "}", f"{name}();"]) + "\n"
-
-
-def outers_and_holes(polygons: Sequence[FloatArray]) -> list[tuple[int, list[int]]]:
-    """Indices of the outer polygons, each with those of its holes, of the ink of the nonzero rule.
-
-    Polygons are :func:`.uncrossed`. One bounds ink if winding numbers are zero on one of its sides only; it is a hole
-    if that is the inside, and belongs to the smallest outer one around it. The others are left out.
-    """
-    from ..outlines.ink import winding  # here and not above: the package opens without a compiler
-
-    areas = np.array([_area(polygon) for polygon in polygons])
-    boxes = np.array([[*polygon.min(axis=0), *polygon.max(axis=0)] for polygon in polygons]).reshape(-1, 4)
-    holes: dict[int, list[int]] = {}
-    around: dict[int, list[int]] = {}
-    for c in np.flatnonzero(areas).tolist():
-        x, y = _middle(polygons[c])
-        near = (boxes[:, 0] <= x) & (boxes[:, 1] <= y) & (boxes[:, 2] >= x) & (boxes[:, 3] >= y) & (areas != 0)
-        near[c] = False
-        turns = {k: winding(polygons[k], x, y) for k in np.flatnonzero(near).tolist()}
-        outside = sum(turns.values())
-        if outside == 0:
-            holes[c] = []
-        elif outside + np.sign(areas[c]) == 0:
-            around[c] = [k for k, times in turns.items() if times]
-    for c, those in around.items():
-        outer = min((k for k in those if k in holes), key=lambda k: abs(areas[k]), default=None)
-        if outer is not None:
-            holes[outer].append(c)
-    return list(holes.items())
-
-
 def _written(glyph: GlyphResult, settings: Settings) -> tuple[list[FloatArray], float]:
     """The polygons as they are written, scaled and rounded to decimals, and the bound with that, in the same unit."""
     flatness = settings.flatness_for(glyph.outline.metrics.units_per_em)
@@ -149,16 +86,3 @@ def _written(glyph: GlyphResult, settings: Settings) -> tuple[list[FloatArray], 
     polygons = [np.round(polygon * settings.scale, decimals) + 0.0 for polygon in found.polygons]
     # Significant digits of a bound, which is rounded up.
     return polygons, rounded_up(found.bound * settings.scale + rounding, 4)
-
-
-def _area(polygon: FloatArray) -> float:
-    x, y = (polygon - polygon[:1]).T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1)) / 2
-
-
-def _middle(polygon: FloatArray) -> tuple[float, float]:
-    """The middle of the longest side: contours may share corners."""
-    ends = np.roll(polygon, -1, axis=0)
-    longest = int(np.hypot(*(ends - polygon).T).argmax())
-    x, y = ((polygon[longest] + ends[longest]) / 2).tolist()
-    return x, y

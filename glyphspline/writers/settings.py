@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, get_args
 
 from ..errors import OptionError, is_positive, require
-from ..fields import LOOK, WRITTEN, check, option, positive
+from ..fields import LOOK, WRITTEN, check, checked, option, positive
 from ..types import INCHES
 
 if TYPE_CHECKING:
@@ -175,9 +175,7 @@ class Settings:
         None, "Keep polylines within this distance of their curves, in font units. Without it, 1/2000 em.",
         WRITTEN, "UNITS", rule=positive("distance in font units"),
     )  # fmt: skip
-    dxf: DxfKind = option(
-        "spline", "Write contours in a DXF as one spline each, as arcs and lines, or as polylines.", WRITTEN
-    )
+    dxf: DxfKind = checked("spline")
     title: str | None = None
 
     def __post_init__(self) -> None:
@@ -201,9 +199,11 @@ class Settings:
 
 @dataclass(frozen=True)
 class Maps:
-    """What curvature maps show: combs of result or source, teeth where a result turns about a corner, and the scale.
+    """What curvature maps show.
 
     Attributes:
+        comb: the curvature of the result, or of the source outline, which is exact, or both.
+        corner_teeth: also draw the teeth of a smooth result in the turn of a corner.
         comb_scale: the curvature, in 1/em, of a full tooth; None: by :func:`..curves.curvature.shared_scale`.
 
     Raises:
@@ -213,11 +213,8 @@ class Maps:
     comb: Combs = option(
         "result", "Show the curvature of the result, or of the source outline, which is exact, or both.", LOOK
     )
-    comb_scale: float | None = option(
-        None, "Draw this curvature, in 1/em, as a full tooth. Without it, the largest of a bowl.",
-        LOOK, "NUMBER", rule=positive("curvature in 1/em"),
-    )  # fmt: skip
-    corner_teeth: bool = option(False, "Draw teeth of a smooth result's comb also in the turn of a corner.", LOOK)
+    comb_scale: float | None = checked(None, positive("curvature in 1/em"))
+    corner_teeth: bool = checked(False)
 
     def __post_init__(self) -> None:
         check(self)

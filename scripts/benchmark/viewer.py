@@ -43,7 +43,7 @@ def answer_row(what: str, path: Path, glyph: str, way: str) -> Row:
     state, share = WAYS[way]
     times = []
     for k in range(CHANGES + 1):
-        body = {"glyph": glyph, "variant": 2, "margin": 0.02, "amount": em * share * (1 + k / CHANGES)} | state
+        body = {"glyph": glyph, "variant": 2, "amount": em * share * (1 + k / CHANGES)} | state
         start = perf_counter()
         client.post("/api/glyph", json=body).raise_for_status()
         times.append(perf_counter() - start)

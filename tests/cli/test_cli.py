@@ -22,7 +22,7 @@ from glyphspline.cli.commands import app
 from glyphspline.cli.groups import grouped, without
 from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
-from glyphspline.fitting.options import Options
+from glyphspline.fitting.options import PRESETS, Options
 from glyphspline.runs.folder import locked
 from glyphspline.runs.spec import RunSpec
 from glyphspline.runs.summary import Summary
@@ -61,7 +61,6 @@ def test_convert_writes_what_it_says(tmp_path: Path) -> None:
         (["--preset", "type", "--corners", "sharp"], ("sharp", 0.02, "best", 1.024)),
         (["--preset", "type", "--corners", "smooth"], ("smooth", 0.02, "best", 1.024)),
         (["--preset", "type", "--effort", "fast"], ("sharp", 0.02, "fast", 1.024)),
-        (["--preset", "paper", "--margin", "0.02"], ("smooth", 0.02, "fast", 1.024)),
         (["--preset", "paper", "--corners", "sharp"], ("sharp", 0.0, "fast", 1.024)),
     ],
 )
@@ -86,11 +85,11 @@ def test_options_of_a_file_win_over_a_preset(more: list[str], tmp_path: Path) ->
 
 def test_a_value_is_made_of_what_is_given_and_printed_as_what_is_not_default() -> None:
     options = Options(corners="smooth", tolerance=2.5, measure=True)
-    spec = RunSpec(options, ("svg",), Settings(Appearance(fill="red"), dxf="polyline"), maps=Maps("source"))
+    spec = RunSpec(options, ("svg",), Settings(Appearance(fill="red"), flatness=3.0), maps=Maps("source"))
     words = [*chain(*arguments(spec, RunSpec()).values())]
     assert words == [
         "--tolerance", "2.5", "--corners", "smooth", "--measure", "--format", "svg", "--fill", "red",
-        "--dxf", "polyline", "--comb", "source",
+        "--flatness", "3.0", "--comb", "source",
     ]  # fmt: skip
     found = []
 
@@ -102,6 +101,29 @@ def test_a_value_is_made_of_what_is_given_and_printed_as_what_is_not_default() -
     only.command()(command)
     assert runner.invoke(only, words).exit_code == 0
     assert found == [spec]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (Options(**PRESETS["paper"]), ["--preset", "paper"]),
+        (Options(**PRESETS["paper"], step=40.0), ["--preset", "paper", "--step", "40.0"]),
+        (Options(corners="sharp", margin=0.0, hold_corners=False), ["--preset", "paper", "--corners", "sharp"]),
+        (Options(corners="smooth", margin=0.0), ["--corners", "smooth"]),
+        (Options(fallback="knot", max_ratio=3.0), []),
+    ],
+)
+def test_what_python_alone_sets_is_printed_if_a_preset_sets_it(options: Options, words: list[str]) -> None:
+    assert [*chain(*arguments(RunSpec(options), RunSpec()).values())] == words
+
+
+@pytest.mark.parametrize(
+    "flag", ["--margin", "--fallback", "--hold-corners", "--pass-corners", "--corner-teeth", "--comb-scale", "--dxf"]
+)
+def test_what_python_alone_sets_is_no_option(flag: str, tmp_path: Path) -> None:
+    result = runner.invoke(app, ["convert", FONT, "--all", "--out", str(tmp_path / "out"), flag])
+    assert result.exit_code == 2
+    assert f"No such option: {flag}" in result.stderr
 
 
 @pytest.mark.parametrize("kind", [Options, RunSpec, Settings, Maps, Appearance, DatasetSpec])
@@ -244,13 +266,14 @@ def test_the_batch_script_gives_each_font_a_folder(tmp_path: Path) -> None:
     assert content(tmp_path / "command") == before
 
 
-def test_the_batch_script_converts_every_glyph_of_one_font_into_a_folder_of_it(tmp_path: Path) -> None:
+def test_one_font_of_a_list_is_converted_whole_into_a_folder_of_it(tmp_path: Path) -> None:
     options = ["--step", "90", "--jobs", "0", "--format", "svg"]
-    done = call("scripts/batch_convert.py", FONT, "--out", str(tmp_path / "script"), *options)
-    assert done.returncode == 0, done.stderr
+    (tmp_path / "list.txt").write_text(FONT, encoding="utf-8")
+    listed = runner.invoke(app, ["convert", f"@{tmp_path / 'list.txt'}", "--out", str(tmp_path / "listed"), *options])
+    assert listed.exit_code == 0, listed.output
     alone = runner.invoke(app, ["convert", FONT, "--all", "--out", str(tmp_path / "alone"), *options])
     assert alone.exit_code == 0
-    assert content(tmp_path / "script" / "kouzan-gyosho-ttf") == content(tmp_path / "alone")
+    assert content(tmp_path / "listed" / "kouzan-gyosho-ttf") == content(tmp_path / "alone")
 
 
 def several(tmp_path: Path, *more: str) -> Result:
@@ -380,7 +403,7 @@ def test_settings_that_are_none_are_refused(text: str | None, words: str, tmp_pa
         (["--tolerance", "abc"], "'--tolerance': 'abc' is not a number"),
         (["--tolerance", "nan"], "--tolerance is a positive distance, not nan"),
         (["--corner-angle", "0"], "--corner-angle is an angle in degrees, above 0 and up to 180, not 0.0"),
-        (["--margin", "0.7"], "--margin is 0 to 0.5, not 0.7"),
+        (["--flatness", "0"], "--flatness is a positive distance in font units, not 0"),
         (["--precision", "12"], "--precision is a whole number from 0 to 9, not 12"),
         (["--count", "2.5"], "'--count': '2.5' is not a whole number"),
         (["--jobs", "-1"], "-1' is not a whole number from 0 on"),
@@ -399,7 +422,7 @@ def test_short_help_version_and_completion() -> None:
     said = runner.invoke(app, ["-h"]).stdout
     assert "--show-completion" in said
     said = " ".join(runner.invoke(app, ["convert", "-h"]).stdout.replace("│", " ").split())
-    for words in ("Which glyphs", "How close to the source", "how sharp a turn counts as a", "Lemma 2"):
+    for words in ("Which glyphs", "How close to the source", "how sharp a turn counts as a", "the paper's terms"):
         assert words in said
 
 

@@ -18,7 +18,9 @@ import glyphspline as gs
 from glyphspline.cli.commands import app
 from glyphspline.outlines.joins import joins
 from glyphspline.runs.jobs import atlas
+from glyphspline.runs.jobs.atlas import make_atlas
 from glyphspline.writers.figures.atlas import overview, profile
+from glyphspline.writers.settings import Maps
 from glyphspline.writers.svg.comb import teeth
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
 from tests.places import ROOT
@@ -220,8 +222,9 @@ def test_an_atlas_is_a_pdf_on_the_scale_asked_for(tmp_path: Path, monkeypatch: p
     scales: list[float] = []
     monkeypatch.setattr(atlas, "atlas_pages", lambda glyphs, scale, **_: scales.__iadd__([scale]))
     monkeypatch.setattr(atlas, "write_pages", lambda path, pages: len(pages))
-    for given in ([], ["--comb-scale", "20"]):
-        assert CliRunner().invoke(app, [*call, *given, "--out", str(tmp_path / "a.pdf")]).exit_code == 0
+    assert CliRunner().invoke(app, [*call, "--out", str(tmp_path / "a.pdf")]).exit_code == 0
+    font = gs.open_font(ROOT / "fonts_test" / "kouzan-gyosho.ttf")
+    make_atlas(font, ["O"], tmp_path / "b.pdf", gs.Options(count=24), maps=Maps("both", comb_scale=20.0), jobs=0)
     assert scales[1] == 20 / 1024 != scales[0]
 
 

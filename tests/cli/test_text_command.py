@@ -152,32 +152,6 @@ def test_sizes_are_those_of_what_is_written(tmp_path: Path) -> None:
             assert np.ptp(points[:, 0]) == pytest.approx(300, rel=1e-3)
 
 
-RING = """<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="20cm" viewBox="0 0 200 200">
-<g transform="translate(10 10)"><circle id="r" cx="90" cy="90" r="60"/></g></svg>"""
-
-
-def test_rings_have_the_radius_asked_for(tmp_path: Path) -> None:
-    (tmp_path / "ring.svg").write_text(RING, encoding="utf-8")
-    drawing = ("--path", str(tmp_path / "ring.svg"), "--align", "center")
-    for place, centre, (low, high) in (
-        (("--circle", "120mm"), (0, 0), (60, 72)),
-        (("--circle", "12cm", "--at", "bottom"), (0, 0), (48, 60)),
-        (drawing, (100, -100), (60, 72)),
-    ):
-        for points in measured(tmp_path, "HELIHE", "--cap-height", "12mm", "--bend", *place):
-            radii = np.hypot(*(points - centre).T)
-            assert (radii.min(), radii.max()) == pytest.approx((low, high), rel=1e-3)
-            middle = points.mean(axis=0) - centre
-            across, up = {"--path": (-1, 0), "--circle": (0, -1 if "--at" in place else 1)}[place[0]]
-            assert middle @ (across, up) > 0.99 * np.hypot(*middle)
-
-
-def test_a_justified_text_goes_all_round(tmp_path: Path) -> None:
-    points = measured(tmp_path, "HOTEL PARIS", "--cap-height", "12mm", "--circle", "120mm", "--align", "justify")[0]
-    turns = np.sort(np.arctan2(*points.T))
-    assert np.diff(turns, append=turns[0] + 2 * np.pi).max() < np.radians(70), "a space and two gaps at most"
-
-
 def test_the_title_is_the_text(tmp_path: Path) -> None:
     for form, title in (("svg", "A & g"), ("source", "A & g"), ("curvature", "Curvature of A & g")):
         root = root_of(text("A & g", "-o", "-", "--format", form))
@@ -185,8 +159,7 @@ def test_the_title_is_the_text(tmp_path: Path) -> None:
 
 
 def test_a_map_of_a_text_shows_what_is_asked_for(tmp_path: Path) -> None:
-    root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "both", "--comb-scale", "8"))
-    assert float(root.attrib["data-scale"]) == pytest.approx(8 / EM, rel=1e-5)
+    root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "both"))
     assert "source-comb" in [path.get("class") for path in root.iter(f"{SVG}path")]
     root = root_of(text("gO", "-o", "-", "--format", "curvature", "--comb", "source"))
     assert next(path for path in root if path.get("class") == "source").attrib["d"]
@@ -233,29 +206,6 @@ def test_a_fallback_font_stands_in() -> None:
     assert "font-1-" in together.stdout
 
 
-CURVES = """<svg xmlns="http://www.w3.org/2000/svg"><path id="w" d="M0 0C2000 -2000 4000 2000 6000 0"/>
-<path id="dot" d="M5 5L5 5"/></svg>"""
-
-
-@pytest.fixture
-def curves(tmp_path: Path) -> Path:
-    path = tmp_path / "curves.svg"
-    path.write_text(CURVES, encoding="utf-8")
-    return path
-
-
-def test_letters_stand_along_a_path(curves: Path) -> None:
-    arguments = ("AgA", "--path", f"{curves}#w", "-o", "-", "--format", "svg")
-    root = root_of(text(*arguments, "--each-glyph"))
-    turns = [float(use.attrib["transform"].split("rotate(")[1][:-1]) for use in root.iter(f"{SVG}use")]
-    assert len(turns) == 3
-    assert turns[0] < -20  # SVG turns clockwise, and the path climbs
-    bent = text(*arguments, "--bend")
-    assert bent.exit_code == 0, bent.output
-    assert bent.stdout != text(*arguments).stdout
-    assert text(*arguments, "--bend", "--each-glyph").exit_code == 2
-
-
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -275,29 +225,19 @@ def test_letters_stand_along_a_path(curves: Path) -> None:
         (("A", "-o", "a.svg", "--cap-height", "9mm"), "no H to measure"),
         (("A", "-o", "a.svg", "--cap-height", "9"), "--cap-height is a length"),
         ((" ", "-o", "a.svg", "--fit-width", "9mm"), "no ink"),
-        (("A", "-o", "a.svg", "--fit-width", "9mm", "--circle", "9em"), "--fit-width is for lines"),
-        (("A", "-o", "a.svg", "--circle", "9mm"), "--circle 9mm needs --size"),
-        (("A", "-o", "a.svg", "--circle", "9em", "--path", "CURVES#w"), "not both"),
-        (("A", "-o", "a.svg", "--at", "bottom"), "--at is for text on a --circle"),
         (("A", "-o", "a.svg", "--stroke-width", "0.1mm"), "--stroke-width is of a line"),
         (("A", "-o", "a.svg", "--stroke", "red", "--stroke-width", "0.1mm"), "there is none"),
         (("A", "-o", "a.svg", "--stroke", "red", "--stroke-width", "thin"), "--stroke-width is font units"),
-        (("A", "-o", "a.svg", "--bend"), "--bend is for text on a --path"),
-        (("A", "-o", "a.svg", "--path", "CURVES#dot"), "length"),
-        (("A", "-o", "a.svg", "--path", "CURVES#none"), "none"),
-        (("A", "-o", "a.svg", "--path", "CURVES#w", "--width", "3em"), "--width is for lines"),
-        (("A" * 50, "-o", "a.svg", "--path", "CURVES#w"), "do not fit"),
-        (("A\nA", "-o", "a.svg", "--path", "CURVES#w"), "lines"),
     ],
 )
 def test_what_is_wrong_is_said_and_nothing_is_written(
-    arguments: tuple[str, ...], said: str, curves: Path, monkeypatch: pytest.MonkeyPatch
+    arguments: tuple[str, ...], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.chdir(curves.parent)
-    result = text(*(word.replace("CURVES", curves.name) for word in arguments))
+    monkeypatch.chdir(tmp_path)
+    result = text(*arguments)
     assert result.exit_code == 2
     assert said in result.stderr
-    assert [path.name for path in curves.parent.iterdir()] == [curves.name]
+    assert not [*tmp_path.iterdir()]
 
 
 def test_a_text_of_spaces_is_an_empty_drawing() -> None:

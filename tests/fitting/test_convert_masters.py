@@ -486,7 +486,6 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
     ("more", "said"),
     [
         (["--location", "wght=600"], "--location is not for --masters"),
-        (["--each"], "--each is not for --masters"),
         (["--scheduler", "tcp://localhost:1"], "--scheduler is not for --masters"),
         (["--axis", "wght=400:900"], "go together"),
         (["--from", str(CFF2)], "go together"),

@@ -50,7 +50,8 @@ def test_written_results_are_within_the_tolerance(corners: str, character: str, 
             assert (m.iterations, m.residual, m.converged, m.rate_bound) == (None, None, None, None)
         assert m.deviation_bound is not None
         assert m.deviation_bound <= tolerance
-        assert m.deviation is None or m.deviation <= m.deviation_bound  # None: drawn apart where it touches itself
+        assert m.deviation is not None
+        assert m.deviation <= m.deviation_bound
         assert true_distance(contour) <= m.deviation_bound + 0.15
     loops = sum(contour.measures.new_crossings or 0 for contour in result.contours)
     assert any("times more than its source" in note for note in result.notes) == (loops > 0)

@@ -100,6 +100,28 @@ def test_shapes_have_their_areas(tmp_path: Path, content: str, expected: float) 
     assert abs(area(outline)) == pytest.approx(expected, rel=5e-6)
 
 
+@pytest.mark.parametrize(
+    ("attributes", "box"),
+    [
+        ('x="30" y="20"', (30, -120, 130, -20)),
+        ('x="30" y="20" width="50" height="50" viewBox="0 0 100 100"', (30, -70, 80, -20)),
+        ('width="96" height="1in" viewBox="50 50 200 200"', (-24, -24, 24, 24)),
+        ('height="200" viewBox="0 0 100 100"', (0, -200, 200, 0)),
+        ('width="400" height="200" viewBox="0 0 100 100"', (100, -200, 300, 0)),
+        ('width="400" height="200" viewBox="0 0 100 100" preserveAspectRatio="xMinYMax"', (0, -200, 200, 0)),
+        ('width="400" height="200" viewBox="0 0 100 100" preserveAspectRatio="none"', (0, -200, 400, 0)),
+        ('width="400" height="200" viewBox="0 0 100 100" preserveAspectRatio="xMaxYMin slice"', (0, -400, 400, 0)),
+        ('width="200" height="100%" viewBox="0 0 200 200" transform="scale(2)"', (0, -200, 200, 0)),
+    ],
+)
+def test_a_drawing_in_a_drawing_has_a_view_of_its_own(
+    tmp_path: Path, attributes: str, box: tuple[float, float, float, float]
+) -> None:
+    outline = drawing(tmp_path, f'<svg {attributes}><path d="M0 0h100v100h-100z"/></svg>')
+    (contour,) = outline.contours
+    np.testing.assert_allclose([*contour.points.min(axis=0), *contour.points.max(axis=0)], box, atol=1e-9)
+
+
 def test_subpaths_that_begin_at_one_point_are_not_joined(tmp_path: Path) -> None:
     assert len(drawing(tmp_path, '<path d="M0 0H10V10ZM0 0H20V20Z"/>').contours) == 2
     first, second = drawing(tmp_path, '<path d="m5 5h10v10zm0 0h20v20z"/>').contours

@@ -26,7 +26,7 @@ from glyphspline.writers.svg.path_data import path_data
 from tests.places import FONTS
 
 HOST = "127.0.0.1:8642"
-STATE = {"glyph": "O", "sampling": "count", "amount": 24, "variant": 2, "margin": 0.02, "corners": "smooth"}
+STATE = {"glyph": "O", "sampling": "count", "amount": 24, "variant": 2, "corners": "smooth"}
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,8 @@ def test_a_glyph_is_what_convert_gives(client: TestClient) -> None:
 @pytest.mark.parametrize(
     "changes",
     [
-        {"variant": 3, "margin": 0.1},
+        {"variant": 3},
+        {"sampling": "tolerance", "amount": 3},
         {"sampling": "tolerance", "amount": 3, "corners": "sharp", "continuity": "g2"},
         {"sampling": "tolerance", "amount": 3, "corners": "sharp", "effort": "best"},
     ],
@@ -104,7 +105,7 @@ def test_presets_are_those_of_the_shell(client: TestClient) -> None:
     for name, values in PRESETS.items():
         amount = values.get("thousandths", 1.0) * font["metrics"]["units_per_em"] / 1000
         usual = {key: value for key, value in font["defaults"].items() if key != "variant"} | {"amount": amount}
-        chosen = {key: value for key, value in values.items() if key not in ("thousandths", "hold_corners")}
+        chosen = {key: value for key, value in values.items() if key in usual}
         assert font["presets"][name] == usual | chosen
 
 
@@ -170,7 +171,7 @@ def test_a_run_is_made_once_for_all_of_its_steps(variant: int, monkeypatch: pyte
 def test_opens_on_defaults_and_never_on_notdef(client: TestClient, tmp_path: Path) -> None:
     font = client.get("/api/font").json()
     assert font["defaults"] == {
-        "variant": 2, "margin": 0.02, "corners": "sharp", "continuity": "c2", "effort": "fast",
+        "variant": 2, "corners": "sharp", "continuity": "c2", "effort": "fast",
         "sampling": "tolerance", "amount": 1.024,
     }  # fmt: skip
     units = {name: unit for name, _, unit, about in font["measures"] if about}
@@ -251,7 +252,7 @@ def test_glyphs_are_found_by_character_code_index_and_name(client: TestClient) -
 @pytest.mark.parametrize(
     "change",
     [
-        {"glyph": "nothing"}, {"glyph": 3}, {"variant": 7}, {"variant": True}, {"margin": "x"}, {"margin": 1e999},
+        {"glyph": "nothing"}, {"glyph": 3}, {"variant": 7}, {"variant": True},
         {"sampling": "eval"}, {"amount": None}, {"corners": []}, {"location": [1]}, {"location": {"wght": 3}},
         {"continuity": "g3"}, {"effort": 1},
         {"corners": "sharp"}, {"moved": [[1, 2, 3]]}, {"moved": [[0, 0, 1e999, 0]]}, {"moved": [[0, 0, 0, 0]] * 1001},

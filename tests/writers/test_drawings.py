@@ -16,9 +16,11 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli.commands import app
+from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.spec import RunSpec
 from glyphspline.types import FloatArray
 from glyphspline.writers.figures.drawings import write_drawing
-from glyphspline.writers.settings import Appearance, Settings
+from glyphspline.writers.settings import Appearance, Maps, Settings
 from tests.drawings import circle, result
 from tests.places import GYOSHO as FONT
 
@@ -132,15 +134,14 @@ def test_from_the_shell(tmp_path: Path) -> None:
     run = CliRunner().invoke(app, [*call, "--size", "20mm", "--height", "20mm", "--restart"])
     assert run.exit_code == 2
     assert "--height and --size exclude each other" in run.output
-    comb = ["--format", "curvature", "--comb", "source", "--corner-teeth", "--restart"]
+    comb = ["--format", "curvature", "--comb", "source", "--restart"]
     run = CliRunner().invoke(app, [*call, *comb])
     assert run.exit_code == 0, run.output
     assert "κ of the source" in (tmp_path / "curvature" / "O.svg").read_text(encoding="utf-8")
     assert '"comb": "source"' in (tmp_path / "run.json").read_text(encoding="utf-8")
-    scaled = ["--format", "curvature", "--comb", "both", "--comb-scale", "12.5", "--restart"]
-    run = CliRunner().invoke(app, [*call, *scaled])
-    assert run.exit_code == 0, run.output
-    drawn = root_of((tmp_path / "curvature" / "O.svg").read_text(encoding="utf-8"))
+    spec = RunSpec(gs.Options(step=60), ("curvature",), maps=Maps("both", comb_scale=12.5))
+    convert_font(gs.open_font(FONT), ["O"], tmp_path / "scaled", spec, jobs=0)
+    drawn = root_of((tmp_path / "scaled" / "curvature" / "O.svg").read_text(encoding="utf-8"))
     assert float(drawn.attrib["data-scale"]) == pytest.approx(12.5 / 1024, rel=1e-4)
     assert "source-comb" in [path.get("class") for path in drawn.iter()]
     refused = CliRunner().invoke(app, [*call, "--fill", "blu", "--restart"])

@@ -6,7 +6,6 @@ import csv
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from io import StringIO
@@ -25,9 +24,8 @@ import glyphspline as gs
 from glyphspline.cli.commands import app
 from glyphspline.curves.bezier import evaluate
 from glyphspline.errors import GlyphsplineError, OptionError, OutputError
-from glyphspline.fitting.results import as_glyph
 from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
-from glyphspline.outlines.polygons import flattened, uncrossed
+from glyphspline.outlines.polygons import flattened
 from glyphspline.runs import worker as batch_worker
 from glyphspline.runs.folder import entries_of
 from glyphspline.runs.jobs.convert import convert_font
@@ -36,13 +34,13 @@ from glyphspline.types import FloatArray
 from glyphspline.writers import formats as registry
 from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
 from glyphspline.writers.json_file import json_text
-from glyphspline.writers.polyline_files import outers_and_holes, polyline_csv, polyline_json, polyline_scad
+from glyphspline.writers.polyline_files import polyline_csv, polyline_json
 from glyphspline.writers.settings import Appearance, Settings
 from tests.places import FONTS, ROOT
 
 TTF, OTF = FONTS / "kouzan-gyosho.ttf", FONTS / "kouzan-gyosho.otf"
 WRITERS = ROOT / "glyphspline" / "writers"
-POLYLINES = ("polyline", "polyline-csv", "polyline-scad")
+POLYLINES = ("polyline", "polyline-csv")
 
 runner = CliRunner()
 
@@ -64,7 +62,7 @@ def test_formats_are_found_by_name() -> None:
     assert [format_named(name).name for name in OURS] == list(OURS)
     assert set(OURS) <= set(format_names())
     assert {each.name for each in formats()} == set(format_names())
-    with pytest.raises(OptionError, match=r"no format bmp: there are source, svg, .*polyline-scad"):
+    with pytest.raises(OptionError, match=r"no format bmp: there are source, svg, .*polyline-csv"):
         format_named("bmp")
 
 
@@ -455,144 +453,18 @@ def test_files_of_polygons_agree_and_say_their_bound(glyph: gs.GlyphResult) -> N
         assert distances(samples * settings.scale, np.array(contour)).max() <= data["bound"]
 
 
-# OpenSCAD.
-
-
-def parts_of(scad: str) -> list[list[FloatArray]]:
-    """Of each ``polygon()`` its paths: what OpenSCAD reads, in a few lines."""
-    found = []
-    for points, paths in re.findall(r"polygon\(points = (\[.*?\]), paths = \[(.*)\]\);", scad):
-        values = np.array(json.loads(points))
-        ranges = re.findall(r"\[for \(i = \[(\d+):(\d+)\]\) i\]", paths)
-        found.append([values[int(a) : int(b) + 1] for a, b in ranges])
-    return found
-
-
-def windings(polygon: FloatArray, points: FloatArray) -> Any:
-    """How often a polygon runs around each of the points, from the angles of its sides."""
-    a = polygon[:, None] - points
-    b = np.roll(a, -1, axis=0)
-    turns = np.arctan2(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], (a * b).sum(axis=2))
-    return np.rint(turns.sum(axis=0) / (2 * np.pi)).astype(int)
-
-
-def ink_of(scad: str, points: FloatArray) -> Any:
-    """Where OpenSCAD has ink: paths of a polygon by the even-odd rule, and the union of polygons."""
-    ink = np.zeros(len(points), dtype=bool)
-    for paths in parts_of(scad):
-        ink |= sum(windings(path, points) for path in paths) % 2 == 1
-    return ink
-
-
-def ring(radius: float, x: float = 0.0, turn: int = 1) -> Contour:
-    angles = turn * np.linspace(0, 2 * np.pi, 24, endpoint=False)
-    return Contour(
-        np.stack([x + radius * np.cos(angles), radius * np.sin(angles)], axis=1), np.ones(24, dtype=np.int64)
-    )
-
-
-def star(points: int, step: int) -> Contour:
-    angles = 2 * np.pi * np.arange(points) * step / points
-    return Contour(100 * np.stack([np.cos(angles), np.sin(angles)], axis=1), np.ones(points, dtype=np.int64))
-
-
-def square(x: float, y: float, size: float, turn: int = 1) -> Contour:
-    corners = np.array([[x, y], [x + size, y], [x + size, y + size], [x, y + size]])
-    return Contour(corners[::turn], np.ones(4, dtype=np.int64))
-
-
-DRAWINGS = {
-    "a hole": [ring(100), ring(50, turn=-1)],
-    "an island in a hole": [ring(100), ring(80, turn=-1), ring(50), ring(20, turn=-1)],
-    "overlapping outer contours": [ring(60), ring(60, 70)],
-    "overlapping, with holes": [ring(60), ring(20, turn=-1), ring(60, 90), ring(20, 90, turn=-1)],
-    "a hole in one, inked by the other": [ring(100), ring(30, 60, turn=-1), ring(90, 100)],
-    "an outer contour in another": [ring(100), ring(50)],
-    "all the other way round": [ring(100, turn=-1), ring(50)],
-    "a contour that crosses itself": [star(5, 2)],
-    "one that goes round itself three times": [star(7, 3)],
-    "a figure of eight": [Contour(np.array([[0.0, 0], [90, 80], [90, 0], [0, 80]]), np.ones(4, dtype=np.int64))],
-    "a hole through two outer contours": [ring(60), ring(60, 70), ring(20, 35, turn=-1)],
-    "sides on sides": [square(0, 0, 60), square(60, 0, 60), square(30, 0, 60), square(10, 10, 20, turn=-1)],
-    "twice around, and out again": [ring(100), ring(90), ring(60, turn=-1), ring(50, turn=-1)],
-    "the same twice": [ring(60), ring(60), ring(30, turn=-1)],
-    "apart": [ring(20), ring(20, 60), ring(20, 120, turn=-1)],
-}
-
-
-@pytest.mark.parametrize("name", DRAWINGS)
-@pytest.mark.parametrize("backwards", [False, True])
-def test_openscad_has_the_ink_of_the_nonzero_rule(name: str, backwards: bool) -> None:
-    contours = DRAWINGS[name][:: -1 if backwards else 1]
-    glyph = as_glyph(Outline(name, contours=contours))
-    points = np.random.default_rng(0).uniform((-110, -110), (210, 110), (4000, 2))
-    nonzero = sum(windings(contour.points, points) for contour in contours) != 0
-    assert 0.02 < nonzero.mean() < 0.98
-    np.testing.assert_array_equal(ink_of(polyline_scad(glyph, Settings()), points), nonzero)
-
-
-def test_polygons_are_uncrossed_with_the_same_winding() -> None:
-    random = np.random.default_rng(1)
-    for count in (5, 12, 40):
-        polygons = [random.uniform(0, 100, (count, 2)) for _ in range(3)]
-        found = uncrossed(polygons)
-        points = random.uniform(0, 100, (500, 2))
-        before, after = (sum(windings(polygon, points) for polygon in some) for some in (polygons, found))
-        np.testing.assert_array_equal(before, after)
-        assert len(found) > len(polygons)
-        glyph = as_glyph(Outline("", contours=[Contour(each, np.ones(count, dtype=np.int64)) for each in polygons]))
-        np.testing.assert_array_equal(ink_of(polyline_scad(glyph, Settings(flatness=1e-3)), points), before != 0)
-
-
-def test_openscad_has_the_ink_of_real_glyphs(glyph: gs.GlyphResult) -> None:
-    scad = polyline_scad(glyph, Settings())
-    polygons = gs.to_polylines(glyph, 0.01).polygons
-    points = np.random.default_rng(0).uniform((0, -144), (1024, 880), (3000, 2))
-    away = np.min([distances(points, polygon) for polygon in polygons], axis=0) > 1.0
-    nonzero = sum(windings(polygon, points) for polygon in polygons) != 0
-    assert away.mean() > 0.8
-    np.testing.assert_array_equal(ink_of(scad, points)[away], nonzero[away])
-    assert len(outers_and_holes(uncrossed(polygons))) > 1
-
-
-def test_the_module_of_openscad_has_a_name_that_it_can_read() -> None:
-    scad = polyline_scad(as_glyph(Outline('a.alt"\n;cube(9);//', contours=[ring(9)])), Settings())
-    assert re.search(r"^module glyph_a_alt___cube_9____\(\) \{$", scad, re.MULTILINE)
-    assert all(
-        line.startswith(("//", "function glyph_", "module glyph_", "  ", "}", "glyph_")) for line in scad.splitlines()
-    )
-
-
-def test_openscad_itself_reads_it(font: gs.Font, tmp_path: Path) -> None:
-    openscad = shutil.which("openscad")
-    if openscad is None:
-        pytest.skip("OpenSCAD is not installed")
-    glyph = gs.convert(font.outline("O"))
-    (tmp_path / "O.scad").write_text(polyline_scad(glyph, Settings()))
-    (tmp_path / "solid.scad").write_text("use <O.scad>\nlinear_extrude(10) glyph_O();\n")
-    for name in ("O.svg", "solid.stl"):
-        source = tmp_path / name.replace(".svg", ".scad").replace(".stl", ".scad")
-        done = subprocess.run([openscad, "-o", tmp_path / name, source], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        assert "WARNING" not in done.stderr
-    paths = "".join(re.findall(r'd="([^"]*)"', (tmp_path / "O.svg").read_text(), re.DOTALL))
-    assert paths.count("M") == 2
-
-
 # The command line.
 
 
 def test_flatness_is_in_the_command_and_another_one_is_another_run(font: gs.Font, tmp_path: Path) -> None:
     call = ["convert", str(TTF), "--text", "O", "--out", str(tmp_path), "--step", "60", "--jobs", "0"]
-    result = runner.invoke(app, [*call, "--format", "polyline", "--flatness", "3", "--dxf", "polyline"])
+    result = runner.invoke(app, [*call, "--format", "polyline", "--flatness", "3"])
     assert result.exit_code == 0, result.output
     run = json.loads((tmp_path / "run.json").read_text())
-    assert (run["flatness"], run["dxf"]) == (3.0, "polyline")
-    assert "--flatness 3.0 --dxf polyline" in run["command"]
+    assert (run["flatness"], run["dxf"]) == (3.0, "spline")
+    assert "--flatness 3.0" in run["command"]
     with pytest.raises(OutputError, match=r"flatness: 3\.0 in the folder, null now"):
-        convert_font(
-            font, ["O"], tmp_path, RunSpec(gs.Options(step=60), ("polyline",), Settings(dxf="polyline")), jobs=0
-        )
+        convert_font(font, ["O"], tmp_path, RunSpec(gs.Options(step=60), ("polyline",)), jobs=0)
     result = runner.invoke(app, [*call, "--format", "polyline", "--flatness", "0", "--restart"])
     assert result.exit_code == 2
     assert "flatness is a positive distance" in result.stderr

@@ -123,8 +123,8 @@ def read_contour(
                     way[side, w, j, 0], way[side, w, j, 1] = x, y
             set_unit(way[0, w, j], joints.arriving[w, j])
             set_unit(way[1, w, j], joints.leaving[w, j])
-    for ends in (cuts, upright, slack, least, level, own):
-        ends[m] = ends[0]
+    cuts[m], upright[m], level[m] = cuts[0], upright[0], level[0]
+    slack[m], least[m], own[m] = slack[0], least[0], own[0]
     reach[:, m] = reach[:, 0]
     joints.corner[m], way[:, :, m] = joints.corner[0], way[:, :, 0]
     joints.arriving[:, m], joints.leaving[:, m] = joints.arriving[:, 0], joints.leaving[:, 0]

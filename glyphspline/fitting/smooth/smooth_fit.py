@@ -27,7 +27,7 @@ from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..closed_curves import beziers, interpolated
 from ..faithful import Fits
-from ..ladders import HELD_TRIES, SMOOTH_TRIES
+from ..ladders import HELD_TRY, SMOOTH_TRIES
 from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours
@@ -50,8 +50,7 @@ THINNINGS = {"fast": 0, "best": 30}
 
 def smooth_fits(options: Options, tolerance: float) -> Fits:
     """Fits of a closed C2 curve to each contour, within ``tolerance`` in font units, and then closer."""
-
-    held = HELD_TRIES if options.hold_corners else ()
+    held = (HELD_TRY,) if options.hold_corners else ()
     tries = (SMOOTH_TRIES[0], *held, *SMOOTH_TRIES[1:])
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
@@ -60,7 +59,7 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
         search.search(attempt <= len(held), early, attempt == 0)
         return search.converted(contours, tolerance)
 
-    return Fits(len(tries), fit, closer=len(held) + 1, apart=len(tries) - 1)
+    return Fits(len(tries), fit)
 
 
 def fit_smooth_masters(

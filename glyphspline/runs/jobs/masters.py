@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...errors import GlyphsplineError, OutputError
-from ...files import make_folder, remove_partials, write_whole, writing
+from ...files import remove_partials, write_whole, writing
 from ...fitting.convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
 from ...fitting.options import Options
 from ...fitting.results import ContourResults, GlyphResult, not_fitted
@@ -62,9 +62,6 @@ if TYPE_CHECKING:
 FORMATS = (*OURS, GALLERY, "ufo", "otf", "ttf")
 """Formats of a run over masters: drawings of the default, a gallery with sliders, a designspace with its UFOs, and
 variable fonts."""
-
-UNMATCHED = "unmatched"
-"""The folder of pictures of glyphs whose outlines in single fonts cannot be matched."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,12 +115,6 @@ class MastersJob(Output, Job[Task, list[Done]]):
             return fonts[0].masters(task.head.name)
         found = next(iter(masters_of_fonts(fonts, self.axis, [task.head.name])))
         if isinstance(found, Unmatched):
-            from ...writers.svg.unmatched import to_unmatched_svg
-
-            if found.outlines:
-                folder = self.out / UNMATCHED
-                make_folder(folder)
-                write_whole(f"{folder}/{task.stem}.svg", to_unmatched_svg(found.outlines, found.error.message))
             raise found.error
         return found
 

@@ -9,16 +9,15 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from ...errors import GlyphsplineError, OptionError
-from ...fitting.convert import convert, convert_many, unfitted
+from ...fitting.convert import convert_many, unfitted
 from ...fitting.options import Options
 from ...fitting.results import GlyphResult
 from ...outlines.outline import Outline
 from ...readers.pens import NO_AREA
 from ...typesetting.placed import LEFT_OUT, Layout
-from ...typesetting.setting import Align, Side
 from ...writers.formats import format_named
 from ...writers.settings import PLAIN_MAPS, Maps, Settings, paper_length
 from ...writers.svg.path_data import curves_data
@@ -28,9 +27,6 @@ from ..schedule import Place, place_of, sources
 from ..spec import LIMITS, MAPS
 from .convert import ConvertJob
 
-if TYPE_CHECKING:
-    from ...typesetting.path import Path
-
 
 @dataclass(frozen=True)
 class TextJob:
@@ -39,9 +35,8 @@ class TextJob:
     Attributes:
         layout: the text on its lines. options: of the fit. formats: names, one for each drawing.
         settings: of the drawings. each_glyph: each glyph is an element of an SVG drawing.
-        path: in font units, that the text is to follow, or None. bend: its letters too. align, side, offset: on it.
-        maps: what curvature maps show.
         fit_width: length of all ink of the lines with its unit, which makes the size; None: that of ``settings``.
+        maps: what curvature maps show.
     """
 
     layout: Layout
@@ -49,11 +44,6 @@ class TextJob:
     formats: tuple[str, ...]
     settings: Settings
     each_glyph: bool = False
-    path: Path | None = None
-    bend: bool = False
-    align: Align = "start"
-    side: Side = "left"
-    offset: float = 0.0
     fit_width: str | None = None
     maps: Maps = PLAIN_MAPS
 
@@ -143,19 +133,8 @@ def drawings(job: TextJob) -> Drawings:
     Raises:
         GlyphsplineError: it cannot be fitted, or a format cannot draw it.
     """
-    layout, bent, options = job.layout, None, job.options
-    if job.path is not None and job.settings.look.view_box == "em":  # there is no line from 0 to the advance
-        job = replace(job, settings=replace(job.settings, look=replace(job.settings.look, view_box="ink")))
+    layout, options = job.layout, job.options
     metrics = layout.fonts[0].metrics
-    if job.path is not None and job.bend:
-        from ...typesetting.bent import SHARE, bend
-
-        tolerance = SHARE * options.tolerance_for(metrics.units_per_em)
-        bent = bend(layout, job.path, tolerance, align=job.align, side=job.side, offset=job.offset)
-    elif job.path is not None:
-        from ...typesetting.along_path import along
-
-        layout = along(layout, job.path, align=job.align, side=job.side, offset=job.offset)
     notes: dict[str, None] = {}
     outside = False
 
@@ -168,10 +147,9 @@ def drawings(job: TextJob) -> Drawings:
     @cache
     def whole(fit: bool) -> GlyphResult:
         if fit:
-            result = layout.convert(options, fitted) if bent is None else convert(bent, options)
+            result = layout.convert(options, fitted)
         else:
-            outline = layout.outline() if bent is None else bent
-            (found,) = unfitted([outline], options)
+            (found,) = unfitted([layout.outline()], options)
             if isinstance(found, GlyphsplineError):
                 raise found
             result = found
@@ -181,8 +159,6 @@ def drawings(job: TextJob) -> Drawings:
     def each_glyph(fit: bool) -> bytes:
         from ...writers.svg.text_drawing import text_document
 
-        if bent is not None:
-            raise GlyphsplineError("--each-glyph: bent text is one outline")
         results = layout.results(options, fitted) if fit else layout.unfitted(options)
         note(results)
         settings = sized(job, layout.placed(results)) if job.fit_width else job.settings
