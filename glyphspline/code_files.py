@@ -1,4 +1,4 @@
-"""Files of compiled code: what they are named by, where they are kept, and which are there. Numba is not needed to know.
+"""Files of compiled code: what they are named by, where they are kept, and which are there, known without Numba.
 
 A file is named by the function, the role of the code, a stamp of all it was made from, and the types of the arguments.
 The stamp is of the source files of the function and of every compiled function below it, and of the constants that they
@@ -76,8 +76,8 @@ class Kept:
         # Stamps are not computed for nothing: they take reading the sources.
         return name in self._names and f"{name}-{stamp(function)}" in self._names
 
-    def look_again(self) -> bool:
-        """List the folders anew if one has changed since; whether it has."""
+    def look_again(self, anew: bool = False) -> bool:
+        """List the folders again if one has changed since, or ``anew``; whether they were."""
         if self._folders is None:
             own = None if is_off() else own_folder()
             self._folders = [str(folder) for folder in (SHIPPED if not why_not_shipped() else None, own) if folder]
@@ -85,7 +85,7 @@ class Kept:
         for folder in self._folders:
             with suppress(OSError):
                 dates.append(os.stat(folder).st_mtime_ns)
-        if dates == self._dates:
+        if dates == self._dates and not anew:
             return False
         self._dates, names = dates, set[str]()
         for folder in self._folders:

@@ -114,7 +114,7 @@ class Callback:
     """
 
     def __init__(self, function: Callable[..., Any], signature: str) -> None:
-        update_wrapper(self, function)
+        self.__module__, self.__doc__ = function.__module__, function.__doc__
         self.py_func, self._signature = function, signature
         self._edition, self._address = -1, None
 
@@ -173,9 +173,16 @@ def spend(seconds: float) -> None:
     """Count time in which plain Python has run; after a while say in one line what compiling would bring."""
     global _spent
     before, _spent = _spent, _spent + seconds
-    if before < PATIENCE <= _spent and not is_off():
-        words = "running as plain Python (%s); `glyphspline warm` compiles once, in minutes, and makes this 100x as fast"
-        tell(words, why_not_shipped() or "its sources are not those of the wheel's code")
+    if before < PATIENCE and (words := hint()):
+        tell("%s", words)
+
+
+def hint() -> str:
+    """What compiling would bring, once this process has run as plain Python for a while; empty until then."""
+    if _spent < PATIENCE or is_off():
+        return ""
+    why = why_not_shipped() or "its sources or types are not those of the wheel's code"
+    return f"running as plain Python ({why}): `glyphspline warm` compiles once, in minutes, and makes this 100x as fast"
 
 
 def tell(words: str, *values: Any) -> None:

@@ -24,7 +24,18 @@ from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.extending import models, register_model, typeof_impl
 
-from .code_files import OPTIONS, SHIPPED, SUFFIX, NoCodeError, kept, made_for, own_folder, stamp, title_of, why_not_shipped
+from .code_files import (
+    OPTIONS,
+    SHIPPED,
+    SUFFIX,
+    NoCodeError,
+    kept,
+    made_for,
+    own_folder,
+    stamp,
+    title_of,
+    why_not_shipped,
+)
 from .files import write_whole
 from .llvm import TYPES
 
@@ -94,14 +105,15 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         Raises:
             NoCodeError: there is none, and nothing is compiled.
         """
-        if kept.is_compiling or (signature, kept.edition) not in self._absent:
-            nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
-            target = target_context.codegen().magic_tuple()
-            if not why_not_shipped(target):
-                if found := self._load(SHIPPED, self._file(signature, tuple(made_for()["target"])), target_context):
-                    return found
-            folder = own_folder()
-            if folder and (found := self._load(folder, self._file(signature, target), target_context)):
+        if not kept.is_compiling and (signature, kept.edition) in self._absent:
+            raise NoCodeError
+        nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
+        target: tuple[str, str, str] = target_context.codegen().magic_tuple()
+        places = [(own_folder(), target)]
+        if not why_not_shipped(target):
+            places.insert(0, (SHIPPED, tuple(made_for()["target"])))
+        for folder, made in places:
+            if folder and (found := self._load(folder, self._file(signature, made), target_context)):
                 return found
         if kept.is_compiling:
             return None

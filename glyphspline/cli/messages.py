@@ -116,8 +116,8 @@ def printable(text: str) -> str:
 
 
 @contextmanager
-def progress(quiet: bool, *, compiling: bool = False, json_log: bool = False) -> Iterator[Any]:
-    """Show a bar of glyphs, or of kinds of work that are compiled, on standard error if that is a terminal.
+def progress(quiet: bool, *, json_log: bool = False) -> Iterator[Any]:
+    """Show a bar of glyphs on standard error if that is a terminal.
 
     It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar. With
     ``json_log`` these are JSON lines instead, one a second at most.
@@ -139,21 +139,18 @@ def progress(quiet: bool, *, compiling: bool = False, json_log: bool = False) ->
     from rich import progress as rich
     from rich.console import Console
 
-    columns: list[Any] = [rich.BarColumn(), rich.MofNCompleteColumn()]
-    if compiling:
-        columns = ["compiling", *columns, "kinds of work", rich.TimeElapsedColumn()]
-    else:
-        columns += ["{task.fields[rate]:.0f}/s", rich.TimeRemainingColumn(), "{task.fields[failed]} failed"]
+    columns = (
+        rich.BarColumn(), rich.MofNCompleteColumn(), "{task.fields[rate]:.0f}/s", rich.TimeRemainingColumn(),
+        "{task.fields[failed]} failed",
+    )  # fmt: skip
     bar = rich.Progress(*columns, console=Console(stderr=True), transient=True)
     task = bar.add_task("", total=None, rate=0.0, failed=0)
 
     def observe(done: int, total: int, failed: int = 0) -> None:
-        bar.start()  # not before: it would run over a line about compiling
+        bar.start()  # not before: it would run over lines about compiling
         bar.update(task, completed=done, total=total or None, failed=failed, rate=bar.tasks[0].speed or 0.0)
 
     try:
-        if compiling:
-            bar.start()
         yield observe
     finally:
         bar.stop()

@@ -52,6 +52,7 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
     Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
     """
+    from ..runs.choice import choice_of
     from ..runs.file_names import folders_for
     from ..runs.folder import locked
     from ..runs.font_search import faces_of
@@ -66,6 +67,8 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
         folders = [call.out / name for name in folders_for(fonts)]
     quiet = call.run.quiet or call.run.json_log
     runs: list[FontRun] = []
+    if choice := choice_of(executor):
+        choice.sources = len(fonts)
     with nullcontext() if alone else locked(call.out):
         for font, folder in zip(fonts, folders, strict=True):
             try:
