@@ -47,25 +47,25 @@ class Compiled:
     def __init__(self, function: Callable[..., Any]) -> None:
         update_wrapper(self, function)
         self.py_func = function
-        self._edition, self._code = -1, None
+        self._edition, self._code, self._lacks = -1, None, False
         everything.append(self)
 
     def __call__(self, *arguments: Any) -> Any:
         """Call the code for the types of the arguments, or the Python function."""
         if self._edition != kept.edition:
             self._choose()
-        if self._code is not None:
+        if self._code is not None and not (self._lacks and _thread.is_plain):
             try:
                 return self._code(*arguments)
-            except NoCodeError:
-                pass
+            except NoCodeError:  # learning it takes longer than some functions do
+                self._lacks = True
         if _thread.is_plain:
             return self.py_func(*arguments)
         return self._plain(arguments)
 
     def _choose(self) -> None:
         """Take machine code for callers in Python, if there is any."""
-        self._edition = kept.edition  # before asking: an answer that is outdated meanwhile is asked for again
+        self._edition, self._lacks = kept.edition, False  # first: what changes meanwhile is asked for again
         self._code = self.entry if kept.is_compiling or kept.has(self.py_func, "entry") else None
 
     def _plain(self, arguments: tuple[Any, ...]) -> Any:

@@ -37,7 +37,7 @@ from .code_files import (
     why_not_shipped,
 )
 from .files import write_whole
-from .llvm import TYPES
+from .llvm import type_of
 
 used: set[str] = set()
 """Names of the files of code that this process has loaded or written."""
@@ -63,7 +63,7 @@ def _type_of(function: Any, context: Any) -> Any:
     """What Numba takes inlined functions for, and those that stand for instructions of LLVM."""
     if hasattr(function, "targetoptions"):
         return Callee(_inlined(function))
-    return TYPES.get(function) or typeof_impl.dispatch(object)(function, context)
+    return type_of(function) or typeof_impl.dispatch(object)(function, context)
 
 
 @cache  # Numba keeps no dispatcher itself

@@ -64,14 +64,16 @@ def _keep_alive(context: Any, owners: Any) -> Any:
     return types.none(owners), code
 
 
-TYPES: dict[Callable[..., Any], Any] = {
-    function: cpu_target.typing_context.resolve_value_type(intrinsic(made))
-    for function, made in (
-        (intrinsics.fma, _fma),
-        (intrinsics.select, _select),
-        (intrinsics.wide_vectors, _wide_vectors),
-        (intrinsics.borrowed, _borrowed),
-        (intrinsics.keep_alive, _keep_alive),
-    )
+_MADE = {
+    intrinsics.fma: intrinsic(_fma),
+    intrinsics.select: intrinsic(_select),
+    intrinsics.wide_vectors: intrinsic(_wide_vectors),
+    intrinsics.borrowed: intrinsic(_borrowed),
+    intrinsics.keep_alive: intrinsic(_keep_alive),
 }
-"""What Numba takes each of the functions for."""
+
+
+def type_of(function: Callable[..., Any]) -> Any:
+    """What Numba takes one of these functions for; None: it is none of them."""
+    made = _MADE.get(function)
+    return made and cpu_target.typing_context.resolve_value_type(made)
