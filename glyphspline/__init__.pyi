@@ -48,6 +48,7 @@ from .outlines.sampling import sample as sample
 from .readers import Font as Font
 from .readers import open_font as open_font
 from .readers import open_source as open_source
+from .runs.warm import warm as warm
 from .typesetting.along_path import along as along
 from .typesetting.bent import bend as bend
 from .typesetting.lay_out import layout as layout

@@ -4,27 +4,24 @@ A file is named by the function, the role of the code, a stamp of all it was mad
 The stamp is of the source files of the function and of every compiled function below it, and of the constants that they
 use: after an edit of any of these the name is another one, so that nothing ever has to be cleared.
 
-Code comes out of the wheel if that has some for this Python and Numba, or else out of a folder of this user's, to which
-new code is written.
+Code comes out of the wheel if that has some for this Python and Numba, or out of the folders of :func:`places`, to one
+of which new code is written.
 """
 
 from __future__ import annotations
 
 import json
+import logging
 import os
 import stat
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
 from hashlib import blake2b
-from inspect import getfile
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
-
-import numpy as np
 
 PACKAGE = Path(__file__).parent
 
@@ -37,6 +34,9 @@ PLACE = "NUMBA_CACHE_DIR"
 OFF = "NUMBA_DISABLE_JIT"
 """Environment variable, Numba's own switch: 1 has everything run as Python, for debuggers and coverage."""
 
+QUIET = "GLYPHSPLINE_QUIET"
+"""Environment variable: set to hide what is said about compiling."""
+
 SUFFIX = ".nbc"
 
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
@@ -44,9 +44,6 @@ OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrap
 
 MAKERS = ("intrinsics.py", "llvm.py")
 """Files of the package that are part of all code."""
-
-CONSTANTS = (bool, int, float, str, bytes, tuple, np.generic, np.ndarray)
-"""Types of the global values that are part of a function's code."""
 
 
 class NoCodeError(Exception):
@@ -59,18 +56,23 @@ class Kept:
     Attributes:
         edition: grows whenever an answer may have changed.
         is_compiling: whether what is not there is compiled.
+        asked: functions whose code was asked for since that began.
     """
 
     def __init__(self) -> None:
         self.edition = 0
         self.is_compiling = False
+        self.asked: set[Callable[..., Any]] = set()
         self._names: frozenset[str] = frozenset()
+        self._folders: list[Path] = []
         self._dates: list[int] | None = None
-        self._folders: list[str] | None = None
 
     def has(self, function: Callable[..., Any], role: str) -> bool:
-        """Whether there is code of a function, for some types of arguments."""
-        if self._folders is None:
+        """Whether there is code of a function, for some types of arguments, or some is to be compiled."""
+        if self.is_compiling:
+            self.asked.add(function)
+            return True
+        if self._dates is None:
             self.look_again()
         name = f"{title_of(function)}.{role}"
         # Stamps are not computed for nothing: they take reading the sources.
@@ -78,27 +80,20 @@ class Kept:
 
     def look_again(self, anew: bool = False) -> bool:
         """List the folders again if one has changed since, or ``anew``; whether they were."""
-        if self._folders is None:
-            own = None if is_off() else own_folder()
-            self._folders = [str(folder) for folder in (SHIPPED if not why_not_shipped() else None, own) if folder]
-        dates = []
-        for folder in self._folders:
-            with suppress(OSError):
-                dates.append(os.stat(folder).st_mtime_ns)
+        if anew or self._dates is None:
+            self._folders = [] if is_off() else [*places(), *([] if why_not_shipped() else [SHIPPED])]
+        dates = [_date(folder) for folder in self._folders]
         if dates == self._dates and not anew:
             return False
-        self._dates, names = dates, set[str]()
-        for folder in self._folders:
-            with suppress(OSError):
-                names.update(name.rpartition("-")[0] for name in os.listdir(folder) if name.endswith(SUFFIX))
-        self._names = frozenset(names | {name.rpartition("-")[0] for name in names})
+        files = [name.rpartition("-")[0] for folder in self._folders for name in names_in(folder, SUFFIX)]
+        self._dates, self._names = dates, frozenset([*files, *(name.rpartition("-")[0] for name in files)])
         self.edition += 1
         return True
 
     @contextmanager
     def compiling(self) -> Iterator[None]:
         """Compile from now on what is called and not there, in all threads of this process."""
-        before, self.is_compiling = self.is_compiling, not is_off()
+        before, self.is_compiling, self.asked = self.is_compiling, not is_off(), set()
         self.edition += 1
         try:
             yield
@@ -110,6 +105,14 @@ class Kept:
 def is_off() -> bool:
     """Whether nothing compiled is to run."""
     return os.environ.get(OFF, "0") not in ("", "0")
+
+
+def _date(folder: Path) -> int:
+    """When a folder has changed; 0: it is not there."""
+    try:
+        return os.stat(folder).st_mtime_ns
+    except OSError:
+        return 0
 
 
 def title_of(function: Callable[..., Any]) -> str:
@@ -153,32 +156,33 @@ def why_not_shipped(target: tuple[str, str, str] | None = None) -> str:
     return ""
 
 
+def places() -> list[Path]:
+    """Folders for code compiled here: the user's choice alone, or else beside the source files, or among the user's
+    caches, or a folder among the temporary files."""
+    if os.environ.get(PLACE):
+        return [Path(os.environ[PLACE])]
+    from platformdirs import user_cache_dir
+
+    return [PACKAGE / "__pycache__" / "compiled", Path(user_cache_dir("glyphspline", appauthor=False)), _temporary()]
+
+
 @cache
 def own_folder() -> Path | None:
-    """The folder for code compiled here: the first of a few that can be written to; None: there is none.
+    """The first of the places that can be written to; None: there is none.
 
-    The user's choice, or beside the source files, or among the user's caches, or a folder among the temporary files,
-    which processes started from now on use too.
+    One among the temporary files is known to processes started from now on: it is a new one where others can write.
     """
-    for folder in _places():
+    import tempfile
+
+    for folder in places():
         with suppress(OSError):  # trying is the only way to know: rights alone do not tell
+            if folder == _temporary():
+                folder = temporary_folder()
+                os.environ[PLACE] = str(folder)
             folder.mkdir(parents=True, exist_ok=True)
             tempfile.TemporaryFile(dir=folder).close()
             return folder
-    with suppress(OSError):
-        folder = temporary_folder()
-        os.environ[PLACE] = str(folder)
-        return folder
     return None
-
-
-def _places() -> Iterator[Path]:
-    if os.environ.get(PLACE):
-        yield Path(os.environ[PLACE])
-    yield PACKAGE / "__pycache__" / "compiled"
-    from platformdirs import user_cache_dir
-
-    yield Path(user_cache_dir("glyphspline", appauthor=False))
 
 
 def temporary_folder() -> Path:
@@ -190,34 +194,62 @@ def temporary_folder() -> Path:
     Raises:
         OSError: there is no folder for temporary files.
     """
-    if not hasattr(os, "getuid"):  # Windows: temporary files are in the user's own folder
-        folder = Path(tempfile.gettempdir()) / "glyphspline-compiled"
-        folder.mkdir(exist_ok=True)
-        return folder
-    folder = Path(tempfile.gettempdir()) / f"glyphspline-{os.getuid()}-compiled"
+    import tempfile
+
+    folder = _temporary()
     with suppress(FileExistsError):
         folder.mkdir(mode=0o700)
-    found = folder.lstat()
-    if stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077:
-        return folder
-    return Path(tempfile.mkdtemp(prefix=f"{folder.name}-"))
+    return folder if is_trusted(folder) else Path(tempfile.mkdtemp(prefix=f"{folder.name}-"))
+
+
+def is_trusted(folder: Path) -> bool:
+    """Whether code in one of the places can be executed: among the temporary files anybody can make a folder."""
+    if folder != _temporary() or not hasattr(os, "getuid"):  # on Windows temporary files are in the user's own folder
+        return True
+    with suppress(OSError):
+        found = folder.lstat()
+        return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o077
+    return False
+
+
+def _temporary() -> Path:
+    import tempfile
+
+    user = f"-{os.getuid()}" if hasattr(os, "getuid") else ""
+    return Path(tempfile.gettempdir()) / f"glyphspline{user}-compiled"
+
+
+def names_in(folder: Path, suffix: str) -> list[str]:
+    """The files in one of the places, or in the wheel's, whose names end so; none if there is no such folder."""
+    with suppress(OSError):
+        return [name for name in os.listdir(folder) if name.endswith(suffix)] if is_trusted(folder) else []
+    return []
 
 
 @cache
 def stamp(function: Callable[..., Any]) -> str:
     """A hash of what a function's code is made from: source files, constants out of other files, Python and Numba."""
-    files, constants = {str(PACKAGE / name) for name in MAKERS}, set()
+    import numpy as np
+
+    kinds, constants = (bool, int, float, str, bytes, tuple, np.generic, np.ndarray), set()
     for one in below(function):
-        files.add(getfile(one))
         for name, value in globals_of(one):
-            module = str(getattr(value, "__module__", ""))
-            if module.startswith(f"{__package__}."):  # named tuples
-                files.add(str(sys.modules[module].__file__))
-            elif isinstance(value, CONSTANTS):
+            if isinstance(value, kinds):
                 constants.add((name, value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()))
     made_by = OPTIONS, sys.implementation.cache_tag, numba_version()
-    words = repr((made_by, sorted(map(_digest, files)), sorted(constants)))
+    words = repr((made_by, sorted(map(digest, sources_of(function))), sorted(constants)))
     return blake2b(words.encode(), digest_size=8).hexdigest()
+
+
+@cache
+def sources_of(function: Callable[..., Any]) -> frozenset[str]:
+    """The source files that a function's code is made from: its own, and those of what it calls."""
+    files = {str(PACKAGE / name) for name in MAKERS}
+    for one in below(function):
+        files.add(one.__code__.co_filename)
+        modules = {str(getattr(value, "__module__", "")) for _, value in globals_of(one)}  # of named tuples too
+        files |= {str(sys.modules[name].__file__) for name in modules if name.startswith(f"{__package__}.")}
+    return frozenset(files)
 
 
 @cache
@@ -252,8 +284,15 @@ def _names(code: CodeType) -> Iterator[str]:
 
 
 @cache
-def _digest(file: str) -> bytes:
-    return blake2b(Path(file).read_bytes()).digest()
+def digest(file: str) -> str:
+    """A hash of a file."""
+    return blake2b(Path(file).read_bytes(), digest_size=16).hexdigest()
+
+
+def tell(words: str, *values: Any) -> None:
+    """Say something about compiling, unless nobody wants to know."""
+    if not os.environ.get(QUIET):
+        logging.getLogger(__package__).warning(words, *values)
 
 
 kept = Kept()

@@ -8,8 +8,7 @@ imported before there is code, or some is to be made: see :mod:`.compiling`.
 
 from __future__ import annotations
 
-import logging
-import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -18,12 +17,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from .code_files import NoCodeError, is_off, kept, why_not_shipped
+from .code_files import NoCodeError, is_off, kept, tell, why_not_shipped
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-QUIET = "GLYPHSPLINE_QUIET"
-"""Environment variable: set to hide what is said about compiling."""
 
 PATIENCE = 10.0
 """Seconds of plain Python in a process after which it says what compiling would bring."""
@@ -66,7 +62,7 @@ class Compiled:
     def _choose(self) -> None:
         """Take machine code for callers in Python, if there is any."""
         self._edition, self._lacks = kept.edition, False  # first: what changes meanwhile is asked for again
-        self._code = self.entry if kept.is_compiling or kept.has(self.py_func, "entry") else None
+        self._code = self.entry if kept.has(self.py_func, "entry") else None
 
     def _plain(self, arguments: tuple[Any, ...]) -> Any:
         """Run as Python, called from outside of all compiled functions."""
@@ -123,7 +119,7 @@ class Callback:
         """Of the machine code; None: there is none."""
         if self._edition != kept.edition:
             self._edition = kept.edition
-            self._address = self._code.address if kept.is_compiling or kept.has(self.py_func, "callback") else None
+            self._address = self._code.address if kept.has(self.py_func, "callback") else None
         return self._address
 
     @cached_property
@@ -181,11 +177,6 @@ def hint() -> str:
     """What compiling would bring, once this process has run as plain Python for a while; empty until then."""
     if _spent < PATIENCE or is_off():
         return ""
-    why = why_not_shipped() or "its sources or types are not those of the wheel's code"
+    compiler = sys.modules.get(f"{__package__}.compiling")
+    why = why_not_shipped(compiler and compiler.target()) or "its sources are not those of the wheel's code"
     return f"running as plain Python ({why}): `glyphspline warm` compiles once, in minutes, and makes this 100x as fast"
-
-
-def tell(words: str, *values: Any) -> None:
-    """Say something about compiling, unless nobody wants to know."""
-    if not os.environ.get(QUIET):
-        logging.getLogger(__package__).warning(words, *values)

@@ -19,23 +19,14 @@ from numba import njit, types
 from numba.core import caching
 from numba.core.ccallback import CFunc
 from numba.core.compiler import CompileResult
+from numba.core.registry import cpu_target
 from numba.core.runtime import nrt
 from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.extending import models, register_model, typeof_impl
 
-from .code_files import (
-    OPTIONS,
-    SHIPPED,
-    SUFFIX,
-    NoCodeError,
-    kept,
-    made_for,
-    own_folder,
-    stamp,
-    title_of,
-    why_not_shipped,
-)
+from . import code_files
+from .code_files import OPTIONS, SHIPPED, SUFFIX, NoCodeError, kept
 from .files import write_whole
 from .llvm import type_of
 
@@ -72,6 +63,12 @@ def _inlined(function: Callable[..., Any]) -> Any:
     return jit(inline="always", error_model="numpy")(function)
 
 
+def target() -> tuple[str, str, str]:
+    """What code is made for here: triple, processor, its features."""
+    found: tuple[str, str, str] = cpu_target.target_context.codegen().magic_tuple()
+    return found
+
+
 def dispatcher(function: Callable[..., Any], role: str, **options: bool) -> Any:
     """Numba's dispatcher for a function and its kept code. It compiles only while :meth:`.Kept.compiling` is open."""
     jit: Any = njit
@@ -96,7 +93,7 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
     """Numba's interface to the kept code of one function: a file for each signature."""
 
     def __init__(self, function: Callable[..., Any], role: str) -> None:
-        self._function, self._role, self._name = function, role, f"{title_of(function)}.{role}"
+        self._function, self._role, self._name = function, role, f"{code_files.title_of(function)}.{role}"
         self._absent: set[tuple[Any, int]] = set()
 
     def load_overload(self, signature: Any, target_context: Any) -> CompileResult | None:
@@ -108,12 +105,12 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
         if not kept.is_compiling and (signature, kept.edition) in self._absent:
             raise NoCodeError
         nrt.rtsys.initialize(target_context)  # enough to run code; all that compiling needs takes a third of a second
-        target: tuple[str, str, str] = target_context.codegen().magic_tuple()
-        places = [(own_folder(), target)]
-        if not why_not_shipped(target):
-            places.insert(0, (SHIPPED, tuple(made_for()["target"])))
-        for folder, made in places:
-            if folder and (found := self._load(folder, self._file(signature, made), target_context)):
+        here = target()
+        folders = [(folder, here) for folder in code_files.places() if code_files.is_trusted(folder)]
+        if not code_files.why_not_shipped(here):
+            folders.insert(0, (SHIPPED, tuple(code_files.made_for()["target"])))
+        for folder, made in folders:
+            if found := self._load(folder, self._file(signature, made), target_context):
                 return found
         if kept.is_compiling:
             return None
@@ -130,7 +127,7 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
 
     def save_overload(self, signature: Any, code: Any) -> None:
         """Keep code, and delete that of sources of long ago."""
-        folder = own_folder()
+        folder = code_files.own_folder()
         if folder is None or code.library.has_dynamic_globals:
             return
         file = folder / self._file(signature, code.codegen.magic_tuple())
@@ -163,4 +160,4 @@ class _Files(caching.NullCache):  # type: ignore[misc, unused-ignore]
     def _file(self, signature: Any, target: tuple[str, ...]) -> str:
         words = [numba.__version__, sys.implementation.cache_tag, str(signature), *target]
         types = blake2b(repr(words).encode(), digest_size=16).hexdigest()
-        return f"{self._name}-{stamp(self._function)}-{types}{SUFFIX}"
+        return f"{self._name}-{code_files.stamp(self._function)}-{types}{SUFFIX}"

@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 
 import typer
 
+from ..code_files import QUIET
 from ..errors import GlyphsplineError, words_of
 from ..files import make_place, writing
 
@@ -34,9 +35,6 @@ INTERRUPTION = "interrupted; the same command goes on from here"
 
 STDOUT = Path("-")
 """Stands for standard output."""
-
-QUIET = "GLYPHSPLINE_QUIET"
-"""Environment variable that keeps processes from reporting that they compile, as in :mod:`..compiled`."""
 
 
 @contextmanager

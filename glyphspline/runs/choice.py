@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from ..code_files import is_off
 from .warm import is_ready
 
 SLOWNESS = 400.0
@@ -24,8 +25,8 @@ SLOWNESS = 400.0
 SAMPLE = 8
 """Number of tasks whose costs stand for those of all."""
 
-LARGE = 1000.0
-"""Units of a large glyph."""
+LARGE, USUAL = 1000.0, 40.0
+"""Units of a large glyph, and of a usual one."""
 
 
 class Cost(NamedTuple):
@@ -73,7 +74,7 @@ class Choice:
 
     def __post_init__(self) -> None:
         self.is_plain = not is_ready(self.kinds)
-        self.is_made = not self.is_plain
+        self.is_made = not self.is_plain or is_off()
 
     def is_clear(self, tasks: int) -> bool:
         """Whether compiling does not pay whatever so many tasks are."""

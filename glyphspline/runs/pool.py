@@ -11,6 +11,7 @@ import math
 import multiprocessing
 import os
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -19,9 +20,10 @@ from contextlib import suppress
 from importlib import import_module
 from multiprocessing import forkserver, resource_tracker
 from multiprocessing.reduction import ForkingPickler
+from types import ModuleType
 from typing import Any
 
-from ..compiled import QUIET
+from ..code_files import QUIET
 from ..errors import GlyphsplineError
 
 POLL = 0.25
@@ -154,13 +156,17 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
 class _Worker:
     """One process, and this end of its pipe."""
 
-    def __init__(self, context: Any, seconds: float, preload: Sequence[str]) -> None:
+    def __init__(self, context: Any, seconds: float, preload: Sequence[str], with_main: bool) -> None:
         self.sign = context.RawValue("d", time.monotonic())
         self.calls, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, self.sign, seconds, preload), daemon=True)
+        main = sys.modules["__main__"]
         try:
+            if not with_main:
+                sys.modules["__main__"] = ModuleType("__main__")
             self.process.start()
         finally:
+            sys.modules["__main__"] = main
             theirs.close()
 
     def receive(self, seconds: float) -> Any:
@@ -194,14 +200,17 @@ class WorkerPool(ThreadPoolExecutor):
         preload: what to load before the first call, as :func:`load` takes it: once, in the process from which
             the workers are forked. If that runs already, for an earlier pool, each worker loads what it lacks.
         expected: number of calls known to come; processes for them start at once.
+        with_main: whether they import the main module, which has to be made for it: calls may be of its functions.
 
     Attributes:
         is_closed: whether it takes no more calls: it was closed, or its processes could not start.
     """
 
-    def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
+    def __init__(
+        self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0, *, with_main: bool = True
+    ) -> None:
         super().__init__(size)
-        self._seconds, self._preload = seconds, tuple(preload)
+        self._seconds, self._preload, self._with_main = seconds, tuple(preload), with_main
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
         self._processes: dict[int, _Worker] = {}  # by thread
         self._starting = threading.Lock()
@@ -274,7 +283,8 @@ class WorkerPool(ThreadPoolExecutor):
                 with self._starting:
                     if self._died and os.name != "nt":
                         start_forkserver(self._preload)
-                    worker = self._processes[thread] = _Worker(self._context, self._seconds, self._preload)
+                    started = _Worker(self._context, self._seconds, self._preload, self._with_main)
+                    worker = self._processes[thread] = started
                 if self.is_closed:
                     worker.end()
                 code = worker.receive(STARTING)

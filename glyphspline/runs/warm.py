@@ -1,4 +1,8 @@
-"""Compiling: all code of some kinds of work, in several processes; and loading it before a worker's time is limited."""
+"""Compiling: all code of some kinds of work, in several processes; and loading it before a worker's time is limited.
+
+A file beside the code, named by the kind, says that all of its code is there. It lists the sources that were compiled,
+so that neither they nor Numba have to be imported to know.
+"""
 
 from __future__ import annotations
 
@@ -13,17 +17,23 @@ from hashlib import blake2b
 from math import inf
 from pathlib import Path
 
-from ..code_files import PACKAGE, SUFFIX, kept, numba_version, own_folder, why_not_shipped
-from ..compiled import tell
+from .. import code_files
+from ..code_files import PACKAGE, SHIPPED, SUFFIX, kept, own_folder, tell, why_not_shipped
 from ..files import write_whole
 
 SAYING = 15.0
 """Seconds between two lines about what is compiled."""
 
+MARK = ".kind"
+
 
 def is_ready(kinds: Iterable[str]) -> bool:
     """Whether all code of some kinds of work is there: the wheel's, or some compiled here."""
-    return not why_not_shipped() or all(map(_is_marked, kinds))
+    if code_files.is_off():
+        return False
+    folders = [*code_files.places(), *([] if why_not_shipped() else [SHIPPED])]
+    names = [folder / name for folder in folders for name in code_files.names_in(folder, MARK)]
+    return all(any(_holds(name) for name in names if name.name.rpartition("-")[0] == kind) for kind in kinds)
 
 
 def warm(jobs: int | None = None, kinds: Sequence[str] | None = None) -> None:
@@ -33,7 +43,7 @@ def warm(jobs: int | None = None, kinds: Sequence[str] | None = None) -> None:
 
     Args:
         jobs: processes; None takes all cores.
-        kinds: of work that comes; None: all.
+        kinds: of work that comes, see :data:`.small_runs.WORK`; None: all.
 
     Raises:
         GlyphsplineError: a process died.
@@ -41,43 +51,47 @@ def warm(jobs: int | None = None, kinds: Sequence[str] | None = None) -> None:
     from .pool import WorkerPool
     from .small_runs import WORK
 
-    left = [kind for kind in WORK if not _is_marked(kind) and (kinds is None or kind in kinds)]
+    left = [kind for kind in WORK if not is_ready([kind]) and (kinds is None or kind in kinds)]
     if not left:
         return
-    size, started, before = min(jobs or os.cpu_count() or 1, len(left)), time.monotonic(), _files()
-    tell("compiling once, some minutes (%s); kept in %s", why_not_shipped() or "asked for", own_folder() or "no folder")
-    with WorkerPool(size, inf, expected=size) as pool:
+    folder, size, started = own_folder(), min(jobs or os.cpu_count() or 1, len(left)), time.monotonic()
+    before = _number_in(folder)
+    tell("compiling once, some minutes (%s); kept in %s", why_not_shipped() or "sources changed", folder or "no folder")
+    with WorkerPool(size, inf, expected=size, with_main=False) as pool:  # a script may call this without a guard
         calls = {pool.submit(compile_kind, kind) for kind in left}
         while calls:
             done, calls = wait(calls, SAYING, FIRST_COMPLETED)
             for call in done:
                 call.result()
-            seconds = time.monotonic() - started
-            numbers = len(_files() - before), len(left) - len(calls), len(left), seconds
+            numbers = _number_in(folder) - before, len(left) - len(calls), len(left), time.monotonic() - started
             tell("compiling: %d functions, %d of %d kinds of work, %.0f s", *numbers)
     kept.look_again(anew=True)
 
 
 def compile_kind(kind: str) -> None:
     """Compile what is not kept of a kind of work, and mark the kind."""
+    from . import small_runs
+
     with kept.compiling():
         prepare(kind)
-    if (mark := _mark(kind)) is not None:
-        with suppress(OSError):
-            write_whole(str(mark), b"")
+        sources = {str(small_runs.__file__)}.union(*map(code_files.sources_of, kept.asked))
+    if (folder := own_folder()) is None:
+        return
+    lines = [f"{code_files.digest(file)} {Path(file).relative_to(PACKAGE).as_posix()}\n" for file in sorted(sources)]
+    content = "".join([_made_by(), *lines]).encode()
+    with suppress(OSError):
+        write_whole(str(folder / f"{kind}-{blake2b(content, digest_size=16).hexdigest()}{MARK}"), content)
 
 
 @cache
 def prepare(kind: str) -> None:
     """Do the small runs of a kind of work, once in a process, with what reads outlines and all modules of a worker."""
     from ..readers.opentype.bulk import load_compiled
-    from . import (
-        small_runs,
-        worker,  # noqa: F401
-    )
+    from . import worker  # noqa: F401
+    from .small_runs import WORK
 
     load_compiled()
-    small_runs.WORK[kind]()
+    WORK[kind]()
 
 
 def code_for(kinds: Iterable[str]) -> list[str]:
@@ -85,28 +99,18 @@ def code_for(kinds: Iterable[str]) -> list[str]:
     return [f"{__name__}:{kind}" for kind in kinds]
 
 
-def _files() -> set[str]:
-    folder = own_folder()
-    return set() if folder is None else {name for name in os.listdir(folder) if name.endswith(SUFFIX)}
+def _number_in(folder: Path | None) -> int:
+    return 0 if folder is None else len(code_files.names_in(folder, SUFFIX))
 
 
-def _is_marked(kind: str) -> bool:
-    folder = own_folder()
-    if folder is None or not any(folder.glob(f"{kind}-*.kind")):
-        return False
-    mark = _mark(kind)
-    return mark is not None and mark.exists()
+def _made_by() -> str:
+    return f"{code_files.numba_version()} {sys.implementation.cache_tag}\n"
 
 
-def _mark(kind: str) -> Path | None:
-    """The file that says that all of a kind of work is compiled, from the sources as they are."""
-    folder = own_folder()
-    return None if folder is None else folder / f"{kind}-{_digest()}.kind"
-
-
-@cache
-def _digest() -> str:
-    digest = blake2b(f"{numba_version()} {sys.implementation.cache_tag}".encode(), digest_size=16)
-    for file in sorted(PACKAGE.rglob("*.py")):
-        digest.update(file.read_bytes())
-    return digest.hexdigest()
+def _holds(mark: Path) -> bool:
+    """Whether the sources are as they were when a mark was made."""
+    with suppress(OSError):
+        made_by, *lines = mark.read_text(encoding="utf-8").splitlines(keepends=True)
+        known = map(str.split, lines)
+        return made_by == _made_by() and all(code_files.digest(str(PACKAGE / file)) == own for own, file in known)
+    return False
