@@ -180,19 +180,21 @@ def compile_all() -> dict[str, float]:
     from glyphspline.runs.warm import compile_kind
 
     found: dict[str, float] = {}
-    below: list[float] = []
+    open_ones: list[list[float]] = []
 
     class Listener(event.Listener):  # type: ignore[misc, unused-ignore]
         def on_start(self, event: Any) -> None:
-            below.append(-time.process_time())
+            open_ones.append([time.process_time(), 0.0])
 
         def on_end(self, event: Any) -> None:
-            seconds = below.pop() + time.process_time()
-            if below:
-                below[-1] += seconds
-            function = event.data["dispatcher"].py_func
+            began, below = open_ones.pop()
+            seconds, function = time.process_time() - began, event.data["dispatcher"].py_func
+            if not function.__module__.startswith("glyphspline."):
+                return  # Numba's own helpers count with what needs them
+            if open_ones:
+                open_ones[-1][1] += seconds
             name = f"{function.__module__}.{function.__qualname__}"
-            found[name] = found.get(name, 0.0) + seconds
+            found[name] = found.get(name, 0.0) + seconds - below
 
     event.register("numba:compile", Listener())
     for kind in WORK:
