@@ -274,8 +274,10 @@ def demo(
     asked = opt.as_typed(subset.text or "")
     texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
     specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
-    with workplace(run.jobs, None, specs[0]) as executor:
+    with workplace(run.jobs, None, *specs) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
+            if not run.quiet:
+                say(f"{path.name}: {text}")
             source = opened(path, opt.Instance(), run.quiet)
             names = source.select(text=text)
             if not names:
@@ -317,7 +319,7 @@ def demo_fonts() -> list[tuple[Path, str]]:
 
     dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
     brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
-    return [*((fonts / name, BRUSHED) for name in brushes), (dejavu, "g&")]
+    return [(dejavu, "g&"), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
 
 
 def limit_memory() -> None:

@@ -113,26 +113,27 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
+EVERY = 15.0
+"""Seconds between two lines about how far a run is, off a terminal."""
+
+
 @contextmanager
 def progress(quiet: bool, *, json_log: bool = False) -> Iterator[Any]:
-    """Show a bar of glyphs on standard error if that is a terminal.
+    """Show a bar of glyphs on standard error if that is a terminal, or else a line every few seconds.
 
-    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar. With
+    It is moved by what is yielded, called with the numbers done, of all, and failed; None if ``quiet``. With
     ``json_log`` these are JSON lines instead, one a second at most.
     """
-    if json_log:
-        last = 0.0
+    last = 0.0 if json_log else time.monotonic()
 
-        def log(done: int, total: int, failed: int) -> None:
-            nonlocal last
-            if time.monotonic() - last >= 1 or done == total:
-                last = time.monotonic()
-                say(json.dumps({"done": done, "total": total, "failed": failed}))
+    def log(done: int, total: int, failed: int = 0) -> None:
+        nonlocal last
+        if time.monotonic() - last >= (1 if json_log else EVERY) or (json_log and done == total):
+            last = time.monotonic()
+            say(json.dumps({"done": done, "total": total, "failed": failed}) if json_log else f"{done} of {total}")
 
-        yield log
-        return
-    if quiet or not sys.stderr.isatty():
-        yield None
+    if json_log or quiet or not sys.stderr.isatty():
+        yield log if json_log or not quiet else None
         return
     from rich import progress as rich
     from rich.console import Console

@@ -39,12 +39,12 @@ class Conversion:
     run: opt.RunOptions
 
 
-def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> AbstractContextManager[Executor]:
-    """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
+def workplace(jobs: int | None, scheduler: str | None, *specs: RunSpec) -> AbstractContextManager[Executor]:
+    """The executor of runs: worker processes (None: one a core, 0: none, in this process), or a cluster."""
     from ..runs.schedule import kinds_for, workers
 
-    kinds = kinds_for(spec.options, spec.formats, spec.masters)
-    return workers(jobs, spec.limits.seconds, kinds, 1, scheduler=scheduler)
+    kinds = dict.fromkeys(kind for one in specs for kind in kinds_for(one.options, one.formats, one.masters))
+    return workers(jobs, specs[0].limits.seconds, kinds, 1, scheduler=scheduler)
 
 
 def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, alone: bool) -> list[FontRun]:
