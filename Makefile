@@ -5,7 +5,7 @@ BIN := .venv/bin
 unexport PYTHONDONTWRITEBYTECODE
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv demo test test-extras test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-starts bench paper clean
+.PHONY: venv warm demo test test-extras test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-starts bench paper clean
 .NOTPARALLEL:
 
 # The package alone.
@@ -22,12 +22,11 @@ venv: .venv/.ready
 	$(INSTALL) '.[$*]'
 	touch .venv/.ready $(if $(filter test test-extras browser,$*),.venv/.dev) $@
 
-# Compiles everything: tests that run side by side would each compile the same functions.
-.venv/.warm: pyproject.toml | .venv/.ready
+# Compiles what is not compiled yet. Without it everything runs as plain Python, tests in hours.
+warm: .venv/.ready
 	$(BIN)/glyphspline warm
-	touch $@
 
-# Compiles what these glyphs need.
+# Nothing is compiled for these few glyphs.
 demo: .venv/.ready
 	$(BIN)/glyphspline demo --out outputs/demo
 
@@ -38,32 +37,32 @@ lint: .venv/.dev
 	$(BIN)/mypy
 
 # As many tests at a time as there are cores. Tests of libraries that only test-extras installs are skipped.
-test: .venv/.test lint .venv/.warm
+test: .venv/.test lint warm
 	$(BIN)/python -m pytest -n auto --dist worksteal
 
 # The tests that `test` skips: data-set libraries, an object store, a cluster, notebooks. A library that is absent fails them.
-test-extras: .venv/.test-extras .venv/.warm
+test-extras: .venv/.test-extras warm
 	$(BIN)/python -m pytest -n auto --dist worksteal -m needs --require-libraries
 
 # The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look). `make paper ONLY=fig4`
 # makes that figure and its claims alone, into outputs/paper-fig4.
-paper: .venv/.ready
+paper: warm
 	$(BIN)/python -m scripts.paper $(if $(ONLY),--only $(ONLY))
 
 # 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
 # Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.
-check-reference: .venv/.ready
+check-reference: warm
 	$(BIN)/python -m scripts.adversarial_footpoints
 	$(BIN)/python -m scripts.check_reference
 
 # What written glyphs of five installed faces, and 500 contours in tangles or thinner than the tolerance, cross that their
 # sources do not, and are not flagged for: seven minutes or so.
-check-topology: .venv/.ready
+check-topology: warm
 	$(BIN)/python -m scripts.topology
 
 # Whether glyphs of eight installed faces, written in both formats, are within the bounds that the manifest has of them:
 # half an hour or so of two free cores.
-check-bounds: .venv/.test
+check-bounds: .venv/.test warm
 	$(BIN)/python -m scripts.bounds
 
 # 2000 starts of a command, 500 of them under load, and in 100 more a process is killed: an hour of two free cores.
@@ -71,10 +70,10 @@ check-starts: .venv/.ready
 	$(BIN)/python -m scripts.starts
 
 # Damaged fonts and drawings through the commands, each in limits of time and memory: MINUTES of it, ten if not given.
-fuzz: .venv/.test .venv/.warm
+fuzz: .venv/.test warm
 	$(BIN)/python -m tests.fuzz --minutes $(or $(MINUTES),10)
 
-bench: .venv/.bench .venv/.warm
+bench: .venv/.bench warm
 	$(BIN)/python -m scripts.benchmark
 
 # The pages of docs/ into docs/_build/html; a broken reference or a docstring that does not parse is an error.
@@ -83,7 +82,7 @@ docs: .venv/.docs
 
 # The wheel and the sdist in clean environments: one of this Python. ALL=1: every Python that is found, each extra.
 # Then a wheel with compiled code, of what `make test` has compiled: nothing is compiled by its commands.
-test-package: .venv/.warm
+test-package: warm
 	$(PYTHON) tests/package/environments.py $(if $(ALL),--all)
 	$(PYTHON) tests/package/compiled_wheel.py
 
@@ -94,7 +93,7 @@ wheel: .venv/.ready
 	GLYPHSPLINE_COMPILED=1 $(BIN)/python -m build --wheel --outdir dist .
 
 # Playwright drives Debian's Chromium; nothing else is downloaded.
-test-browser: .venv/.browser .venv/.warm
+test-browser: .venv/.browser warm
 	@command -v chromium >/dev/null || { test "$$(id -u)" = 0 && apt-get update -q && apt-get install -qy chromium; } \
 		|| { echo "make test-browser needs Debian's chromium: apt-get install chromium (as root)" >&2; exit 1; }
 	$(BIN)/python -m pytest tests/browser

@@ -49,6 +49,7 @@ from .outlines.sampling import sample as sample
 from .readers import Font as Font
 from .readers import open_font as open_font
 from .readers import open_source as open_source
+from .runs.warm import warm as warm
 from .typesetting.lay_out import layout as layout
 from .typesetting.placed import Layout as Layout
 from .writers.dxf import to_dxf as to_dxf

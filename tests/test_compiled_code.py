@@ -1,4 +1,4 @@
-"""Compiled code: where it is kept, what it is stamped with, other processors, and no compiler."""
+"""Compiled code: which calls run it, where it is kept, what it is stamped with, other processors, and no compiler."""
 
 from __future__ import annotations
 
@@ -18,11 +18,14 @@ import numpy as np
 import pytest
 
 import glyphspline
-from glyphspline import compiled
+from glyphspline import code_files, compiled
 
 PACKAGE = Path(glyphspline.__file__).parent
 NOBODY = 65534
-SMALL = "import numpy; from glyphspline.curves.integrals import area; print(area(numpy.zeros((1, 4, 2))))"
+SMALL = (
+    "import sys, numpy; from glyphspline.code_files import kept; from glyphspline.curves.integrals import area\n"
+    "with kept.compiling(): print(area(numpy.zeros((1, 4, 2))))"
+)
 """A program that compiles little."""
 
 has_users = pytest.mark.skipif(os.name == "nt", reason="has no users with numbers")
@@ -71,13 +74,12 @@ def as_nobody(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
 
 @has_users
 def test_without_a_place_the_code_is_in_a_folder_of_ones_own(installed: Path) -> None:
-    for said in (1, 0):
+    for _ in range(2):
         found = as_nobody(installed, "-c", SMALL)
-        assert found.returncode == 0, found.stderr
-        assert found.stderr.count("kept in") == len(found.stderr.splitlines()) == said
+        assert (found.returncode, found.stderr) == (0, "")
     (folder,) = (installed / "tmp").iterdir()
     assert folder.stat().st_mode & 0o777 == 0o700
-    assert list(folder.glob("*.nbc"))
+    assert len(list(folder.glob("*.nbc"))) == 1
 
 
 @has_users
@@ -86,8 +88,8 @@ def test_a_folder_that_others_can_change_is_not_used(
     harm: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    first = compiled.temporary_folder()
-    assert compiled.temporary_folder() == first
+    first = code_files.temporary_folder()
+    assert code_files.temporary_folder() == first
     if harm == "open to all":
         first.chmod(0o777)
     else:
@@ -96,23 +98,16 @@ def test_a_folder_that_others_can_change_is_not_used(
             first.symlink_to(tmp_path)
         else:
             first.write_text("")
-    second = compiled.temporary_folder()
+    second = code_files.temporary_folder()
     assert second != first
     assert second.stat().st_mode & 0o777 == 0o700
 
 
-def test_a_place_that_is_given_is_taken_and_said_once(tmp_path: Path) -> None:
-    for lines in (1, 0):
+def test_a_place_that_is_given_is_taken(tmp_path: Path) -> None:
+    for _ in range(2):
         found = run("-c", SMALL, NUMBA_CACHE_DIR=str(tmp_path / "there"))
-        assert found.returncode == 0, found.stderr
-        assert len(found.stderr.splitlines()) == found.stderr.count(str(tmp_path / "there")) == lines
+        assert (found.returncode, found.stderr) == (0, "")
     assert [path.suffix for path in (tmp_path / "there").iterdir()] == [".nbc"]
-
-
-def test_nobody_is_told_who_does_not_want_to_be(tmp_path: Path) -> None:
-    found = run("-c", SMALL, NUMBA_CACHE_DIR=str(tmp_path), GLYPHSPLINE_QUIET="1")
-    assert (found.returncode, found.stderr) == (0, "")
-    assert list(tmp_path.iterdir())
 
 
 TWO_FILES = {
@@ -125,57 +120,96 @@ TWO_FILES = {
     ),
 }
 
+COMPILING = "with kept.compiling(): more(10)"
+CALLING = "print(more(10), 'compiled' if more._code is not None and not more._lacks else 'plain')"
+USED = "from glyphspline.compiling import used; print(len(used), 'files')"
+
+
+@pytest.fixture
+def two_files(tmp_path: Path) -> Path:
+    """The folder of a package of two compiled functions, one of which calls the other."""
+    package = tmp_path / "edited"
+    package.mkdir()
+    for name, text in TWO_FILES.items():
+        (package / name).write_text(text)
+    return package
+
+
+def printed(package: Path, *lines: str) -> list[str]:
+    """What a program of these lines prints, its code kept beside the package."""
+    names = "import subprocess, sys", "from glyphspline.code_files import kept"
+    functions = "from edited.inner import twice", "from edited.outer import more"
+    place = {"NUMBA_CACHE_DIR": str(package.parent / "code"), "PYTHONPATH": str(package.parent)}
+    found = run("-B", "-c", "\n".join([*names, *functions, *lines]), **place)
+    assert (found.returncode, found.stderr) == (0, "")
+    return found.stdout.splitlines()
+
 
 @pytest.mark.parametrize(
     ("file", "before", "after", "result"),
     [("inner.py", "2 *", "3 *", 35), ("constants.py", "5", "6", 26), ("outer.py", "+", "-", 15)],
 )
 def test_an_edit_anywhere_below_a_function_is_noticed(
-    file: str, before: str, after: str, result: int, tmp_path: Path
+    file: str, before: str, after: str, result: int, two_files: Path
 ) -> None:
     """Also in a file that the function only calls, or takes a constant from; an edit that is undone is known."""
-    package = tmp_path / "edited"
-    package.mkdir()
-    for name, text in TWO_FILES.items():
-        (package / name).write_text(text)
+    assert printed(two_files, COMPILING, CALLING) == printed(two_files, CALLING) == ["25 compiled"]
+    (two_files / file).write_text(TWO_FILES[file].replace(before, after))
+    assert printed(two_files, CALLING) == [f"{result} plain"]
+    assert printed(two_files, COMPILING, CALLING) == printed(two_files, CALLING) == [f"{result} compiled"]
+    (two_files / file).write_text(TWO_FILES[file])
+    assert printed(two_files, CALLING) == ["25 compiled"]
+
+
+def test_code_that_is_there_in_part_is_used_for_what_it_fits(two_files: Path) -> None:
+    """An outer call without code runs as Python and calls the code of an inner function; other types run as Python."""
+    assert printed(two_files, "with kept.compiling(): twice(10)", CALLING, USED) == ["25 plain", "1 files"]
+    assert printed(two_files, CALLING, USED) == ["25 plain", "1 files"]
+    assert printed(two_files, COMPILING, "print(more(1.5), more(10))", USED) == ["8.0 25", "2 files"]
+    assert printed(two_files, "print(more(1.5), more._lacks, more(10))", USED) == ["8.0 True 25", "1 files"]
+
+
+def test_code_that_another_process_makes_is_used_from_the_next_call_on(two_files: Path) -> None:
+    elsewhere = f"from edited.outer import more; from glyphspline.code_files import kept\n{COMPILING}"
+    there = f"subprocess.run([sys.executable, '-B', '-c', {elsewhere!r}], check=True)"
+    imported = "print('numba' in sys.modules)"
+    assert printed(two_files, CALLING, imported, there, CALLING) == ["25 plain", "False", "25 compiled"]
+
+
+def test_running_as_python_imports_no_compiler_and_changes_nothing_in_the_process(tmp_path: Path) -> None:
+    """Nor in its threads, and nothing warns of what compiled code computes in silence."""
+    font = PACKAGE.parent / "fonts_test" / "edge-cases.ttf"
     code = (
-        "from edited.outer import more; from glyphspline import compiled as c; print(more(10), c._listener.count > 0)"
+        "import sys, threading, numpy as np\n"
+        "before = np.geterr()\n"
+        "import glyphspline as gs\n"
+        "def work():\n"
+        "    gs.interpolate(np.random.default_rng(1).random((9, 2)))\n"
+        f"    gs.convert(gs.open_font({str(font)!r}).outline('a'), gs.Options(tolerance=3.0))\n"
+        "    assert np.geterr() == before\n"
+        "    done.append(1)\n"
+        "done = []\n"
+        "work()\n"
+        "thread = threading.Thread(target=work); thread.start(); thread.join()\n"
+        "print(len(done), *sorted({name.split('.')[0] for name in sys.modules} & {'numba', 'llvmlite'}))"
     )
-
-    def printed() -> str:
-        place = {"NUMBA_CACHE_DIR": str(tmp_path / "code"), "PYTHONPATH": str(tmp_path), "GLYPHSPLINE_QUIET": "1"}
-        found = run("-B", "-c", code, **place)
-        assert found.returncode == 0, found.stderr
-        return found.stdout.strip()
-
-    assert [printed(), printed()] == ["25 True", "25 False"]
-    (package / file).write_text(TWO_FILES[file].replace(before, after))
-    assert [printed(), printed()] == [f"{result} True", f"{result} False"]
-    (package / file).write_text(TWO_FILES[file])
-    assert printed() == "25 False"
-
-
-def test_every_compiled_function_can_be_called_from_python() -> None:
-    """One that only compiled functions call gets its entry for Python when it is called."""
-    from glyphspline.curves import cubics
-
-    assert isinstance(cubics.length, compiled.Compiled)
-    assert cubics.length(3.0, 4.0) == 5.0
+    found = run("-W", "error", "-c", code, NUMBA_CACHE_DIR=str(tmp_path))
+    assert (found.returncode, found.stdout.split()) == (0, ["2"]), found.stderr
+    assert not list(tmp_path.iterdir())
 
 
 def test_it_runs_as_plain_python_without_a_compiler(tmp_path: Path) -> None:
     """Fits of small contours, in both modes: the same numbers but for products that compiled code rounds once."""
     code = (
         "import json, sys, numpy as np, glyphspline as gs\n"
-        "from glyphspline.runs.warm import DISC, LEAF\n"
-        "from glyphspline.compiled import everything\n"
+        "from glyphspline.runs.small_runs import DISC, LEAF\n"
         "points = np.random.default_rng(1).random((9, 2))\n"
         "spline = gs.interpolate(points, finish='solve').spline.control_points\n"
         "found = [spline.tolist()]\n"
         "for shape, options in ((LEAF, gs.Options()), (DISC, gs.Options(corners='sharp', tolerance=0.3))):\n"
         "    glyph = gs.convert(gs.Outline('shape', contours=(shape,)), options)\n"
         "    found.append(glyph.arrays.curves.points.tolist())\n"
-        "print(json.dumps([bool(everything), *found]))"
+        "print(json.dumps(['numba' in sys.modules, *found]))"
     )
     plain, fast = (json.loads(run("-c", code, NUMBA_DISABLE_JIT=off).stdout) for off in ("1", "0"))
     assert (plain[0], fast[0]) == (False, True)
@@ -213,12 +247,11 @@ CONVERT = ["-m", "glyphspline", "convert", str(PACKAGE.parent / "fonts_test" / "
 
 
 @pytest.mark.skipif(os.name == "nt", reason="sends a signal")
-@pytest.mark.parametrize("jobs", ["0", "2"])
-def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
+def test_ctrl_c_ends_a_compilation(tmp_path: Path) -> None:
     place = {"NUMBA_CACHE_DIR": str(tmp_path / "code")}
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background jobs ignore the signal
     started = subprocess.Popen(
-        [sys.executable, *CONVERT, "--jobs", jobs, "--out", str(tmp_path / "out")],
+        [sys.executable, "-m", "glyphspline", "warm", "--jobs", "2"],
         env=os.environ | place, cwd=PACKAGE.parent, stderr=subprocess.PIPE, text=True,
     )  # fmt: skip
     signal.signal(signal.SIGINT, before)
@@ -231,22 +264,27 @@ def test_ctrl_c_ends_a_compilation(jobs: str, tmp_path: Path) -> None:
     assert run("-c", SMALL, **place).returncode == 0
 
 
-def test_a_second_command_compiles_nothing(tmp_path: Path) -> None:
-    found = run(*CONVERT, "--out", str(tmp_path / "first"))
-    assert found.returncode == 0
-    found = run(*CONVERT, "--out", str(tmp_path / "second"))
-    assert "compiling" not in found.stderr
+def test_a_command_with_code_runs_nothing_as_python(tmp_path: Path) -> None:
+    words = [*CONVERT[2:], "--jobs", "0", "--out", str(tmp_path / "out")]
+    code = (
+        "from glyphspline import compiled\nfrom glyphspline.cli.commands import app\n"
+        f"app({words!r}, standalone_mode=False)\nprint(compiled._spent)"
+    )
+    found = run("-c", code)
+    assert (found.returncode, float(found.stdout)) == (0, 0.0), found.stderr
 
 
 def test_warm_reaches_every_function() -> None:
-    """No function is left for a later command to compile."""
+    """No function is left that always runs as Python."""
     code = (
         "import importlib, pkgutil, glyphspline\n"
-        "from glyphspline.runs.warm import WORK, prepare\n"
-        "for kind in WORK: prepare(kind)\n"
+        "from glyphspline.code_files import below, kept\n"
+        "from glyphspline.runs.small_runs import WORK\n"
+        "from glyphspline.runs.warm import compile_kind\n"
+        "for kind in WORK: compile_kind(kind)\n"
         "for module in pkgutil.walk_packages(glyphspline.__path__, 'glyphspline.'):\n"
         "    if '__main__' not in module.name: importlib.import_module(module.name)\n"
-        "from glyphspline.compiled import below, everything\n"
+        "from glyphspline.compiled import everything\n"
         "ready = set().union(*(below(one.py_func) for one in everything if one.entry.overloads))\n"
         "print(*[f'{one.__module__}.{one.__qualname__}' for one in everything if one.py_func not in ready])"
     )
@@ -257,3 +295,19 @@ def test_warm_reaches_every_function() -> None:
 def test_the_command_warms_every_kind_of_work() -> None:
     found = run("-m", "glyphspline", "warm", "--jobs", "1")
     assert (found.returncode, found.stderr.splitlines()[-1]) == (0, "everything is compiled")
+
+
+def test_after_a_while_one_line_says_what_compiling_would_bring(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(compiled, "_spent", 0.0)
+    monkeypatch.delenv("GLYPHSPLINE_QUIET", raising=False)
+    for _ in range(30):
+        compiled.spend(0.7)
+    (record,) = caplog.records
+    assert "glyphspline warm" in record.getMessage()
+    assert record.getMessage() == compiled.hint()
+    monkeypatch.setattr(compiled, "_spent", 0.0)
+    monkeypatch.setenv("GLYPHSPLINE_QUIET", "1")
+    compiled.spend(11.0)
+    assert len(caplog.records) == 1

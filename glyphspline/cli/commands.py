@@ -156,7 +156,7 @@ def info(
 
         path = standard_input() if str(font) == STDIN else font
         # In processes with a time limit: counting the contours of a hostile font can take years.
-        with workers(None) as executor, progress(quiet=False) as observer:
+        with workers(None, kinds=["checks"]) as executor, progress(quiet=False) as observer:
             add_glyph_facts(path.absolute(), facts, executor, observer)
     if run.as_json:
         print_json(facts)
@@ -269,19 +269,14 @@ def demo(
 
     龍 and 好 are converted with the preset paper. The package's notebooks are copied to notebooks/.
     """
-    from ..runs.schedule import kinds_for
-    from ..runs.warm import is_kept
-    from ..runs.warm import warm as warm_up
-
     undone, shown, paper = False, [], RunSpec(Options(**PRESETS["paper"]))
     asked = opt.as_typed(subset.text or "")
     texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
     specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
-    if not is_kept():  # on all cores; a run's workers wait for one process
-        kinds = dict.fromkeys(kind for spec in specs for kind in kinds_for(spec.options, spec.formats))
-        warm_up(run.jobs, kinds=[*kinds])
-    with workplace(run.jobs, None, specs[0]) as executor:
+    with workplace(run.jobs, None, *specs) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
+            if not run.quiet:
+                say(f"{path.name}: {text}")
             source = opened(path, opt.Instance(), run.quiet)
             names = source.select(text=text)
             if not names:
@@ -309,8 +304,7 @@ def warm(run: Annotated[opt.RunOptions, only("jobs", "quiet")]) -> None:
     """Compile everything now, so that no other command has to: for checkouts and containers."""
     from ..runs.warm import warm as compile_all
 
-    with progress(run.quiet, compiling=True) as observer:
-        compile_all(run.jobs, observer)
+    compile_all(run.jobs)
     if not run.quiet:
         say("everything is compiled")
 
@@ -324,7 +318,7 @@ def demo_fonts() -> list[tuple[Path, str]]:
 
     dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
     brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
-    return [*((fonts / name, BRUSHED) for name in brushes), (dejavu, "g&")]
+    return [(dejavu, "g&"), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
 
 
 def limit_memory() -> None:

@@ -18,6 +18,7 @@ from typing import Any, NoReturn
 
 import typer
 
+from ..code_files import QUIET
 from ..errors import GlyphsplineError, words_of
 from ..files import make_place, writing
 
@@ -34,9 +35,6 @@ INTERRUPTION = "interrupted; the same command goes on from here"
 
 STDOUT = Path("-")
 """Stands for standard output."""
-
-QUIET = "GLYPHSPLINE_QUIET"
-"""Environment variable that keeps processes from reporting that they compile, as in :mod:`..compiled`."""
 
 
 @contextmanager
@@ -115,45 +113,43 @@ def printable(text: str) -> str:
     return "".join(c if c.isprintable() or c == "\n" else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
-@contextmanager
-def progress(quiet: bool, *, compiling: bool = False, json_log: bool = False) -> Iterator[Any]:
-    """Show a bar of glyphs, or of kinds of work that are compiled, on standard error if that is a terminal.
+EVERY = 15.0
+"""Seconds between two lines about how far a run is, off a terminal."""
 
-    It is moved by what is yielded, called with the numbers done, of all, and failed; None where there is no bar. With
+
+@contextmanager
+def progress(quiet: bool, *, json_log: bool = False) -> Iterator[Any]:
+    """Show a bar of glyphs on standard error if that is a terminal, or else a line every few seconds.
+
+    It is moved by what is yielded, called with the numbers done, of all, and failed; None if ``quiet``. With
     ``json_log`` these are JSON lines instead, one a second at most.
     """
-    if json_log:
-        last = 0.0
+    last = 0.0 if json_log else time.monotonic()
 
-        def log(done: int, total: int, failed: int) -> None:
-            nonlocal last
-            if time.monotonic() - last >= 1 or done == total:
-                last = time.monotonic()
-                say(json.dumps({"done": done, "total": total, "failed": failed}))
+    def log(done: int, total: int, failed: int = 0) -> None:
+        nonlocal last
+        if time.monotonic() - last >= (1 if json_log else EVERY) or (json_log and done == total):
+            last = time.monotonic()
+            say(json.dumps({"done": done, "total": total, "failed": failed}) if json_log else f"{done} of {total}")
 
-        yield log
-        return
-    if quiet or not sys.stderr.isatty():
-        yield None
+    if json_log or quiet or not sys.stderr.isatty():
+        yield log if json_log or not quiet else None
         return
     from rich import progress as rich
     from rich.console import Console
 
-    columns: list[Any] = [rich.BarColumn(), rich.MofNCompleteColumn()]
-    if compiling:
-        columns = ["compiling", *columns, "kinds of work", rich.TimeElapsedColumn()]
-    else:
-        columns += ["{task.fields[rate]:.0f}/s", rich.TimeRemainingColumn(), "{task.fields[failed]} failed"]
+    columns = (
+        rich.BarColumn(), rich.MofNCompleteColumn(), "{task.fields[rate]:.0f}/s", rich.TimeRemainingColumn(),
+        "{task.fields[failed]} failed",
+    )  # fmt: skip
     bar = rich.Progress(*columns, console=Console(stderr=True), transient=True)
     task = bar.add_task("", total=None, rate=0.0, failed=0)
 
     def observe(done: int, total: int, failed: int = 0) -> None:
-        bar.start()  # not before: it would run over a line about compiling
+        bar.start()  # not before: it would run over lines about compiling
         bar.update(task, completed=done, total=total or None, failed=failed, rate=bar.tasks[0].speed or 0.0)
 
     try:
-        if compiling:
-            bar.start()
         yield observe
     finally:
         bar.stop()

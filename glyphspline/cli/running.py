@@ -39,12 +39,12 @@ class Conversion:
     run: opt.RunOptions
 
 
-def workplace(jobs: int | None, scheduler: str | None, spec: RunSpec) -> AbstractContextManager[Executor]:
-    """The executor of a run: worker processes (None: one a core, 0: none, in this process), or a cluster."""
+def workplace(jobs: int | None, scheduler: str | None, *specs: RunSpec) -> AbstractContextManager[Executor]:
+    """The executor of runs: worker processes (None: one a core, 0: none, in this process), or a cluster."""
     from ..runs.schedule import kinds_for, workers
 
-    kinds = kinds_for(spec.options, spec.formats, spec.masters)
-    return workers(jobs, spec.limits.seconds, kinds, 1, scheduler=scheduler)
+    kinds = dict.fromkeys(kind for one in specs for kind in kinds_for(one.options, one.formats, one.masters))
+    return workers(jobs, specs[0].limits.seconds, kinds, 1, scheduler=scheduler)
 
 
 def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, alone: bool) -> list[FontRun]:
@@ -52,6 +52,7 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
     Of several, every glyph is converted unless some are asked for, and a font that cannot be read is passed over.
     """
+    from ..runs.choice import choice_of
     from ..runs.file_names import folders_for
     from ..runs.folder import locked
     from ..runs.font_search import faces_of
@@ -66,6 +67,8 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
         folders = [call.out / name for name in folders_for(fonts)]
     quiet = call.run.quiet or call.run.json_log
     runs: list[FontRun] = []
+    if choice := choice_of(executor):
+        choice.sources = len(fonts)
     with nullcontext() if alone else locked(call.out):
         for font, folder in zip(fonts, folders, strict=True):
             try:

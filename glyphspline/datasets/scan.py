@@ -92,6 +92,7 @@ class ScanJob(Job[Path, list[FontFacts]]):
     spec: DatasetSpec
 
     chunk = 1
+    settles = False
 
     def together(self, tasks: Sequence[Path], contents: Sequence[Any]) -> list[FontFacts]:
         """The facts of some files."""

@@ -29,6 +29,7 @@ from ..extras import need
 from ..files import write_whole
 from .pool import WorkerLostError, WorkerPool
 from .spec import Limits
+from .warm import code_for, is_ready, warm
 
 KEPT = 8
 """Fonts kept in the memory of the cluster, and on each worker's disk, beside those of calls in flight."""
@@ -38,7 +39,7 @@ OUT = "out"
 
 
 Processes = tuple[float, tuple[str, ...]]
-"""Processes that make calls in a worker of the cluster: time limit between signs of life, and what they load first."""
+"""Processes that make calls in a worker of the cluster: time limit between signs of life, and kinds of work in them."""
 
 
 class ClusterExecutor(Executor):
@@ -51,7 +52,7 @@ class ClusterExecutor(Executor):
     Args:
         address: of the scheduler, as in ``tcp://10.0.0.1:8786``.
         seconds: time limit between signs of life, after which a call is ended.
-        preload: what to load before the first call, see :func:`.pool.load`.
+        kinds: of work, see :mod:`.warm`; each machine of the cluster compiles first what it has no code of.
         patience: time limit for the scheduler to answer.
 
     Raises:
@@ -59,14 +60,14 @@ class ClusterExecutor(Executor):
     """
 
     def __init__(
-        self, address: str, seconds: float = Limits.seconds, preload: Sequence[str] = (), patience: str = "10s"
+        self, address: str, seconds: float = Limits.seconds, kinds: Sequence[str] = (), patience: str = "10s"
     ) -> None:
         distributed = need("cluster")
         try:
             self._client = distributed.Client(address, timeout=patience, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise GlyphsplineError(f"no scheduler at {address}: {words_of(error)}") from error
-        self._processes: Processes = seconds, tuple(preload)
+        self._processes: Processes = seconds, tuple(kinds)
         self._inner = self._client.get_executor(pure=False)
         self._fonts: OrderedDict[Path, tuple[str, Any]] = OrderedDict()
         self._max_workers = max(1, sum(self._client.nthreads().values()))
@@ -172,11 +173,13 @@ def font_file(name: str, content: bytes, scratch: str) -> FontFile:
 
 
 @lru_cache(maxsize=1)
-def processes_of(size: int, seconds: float, preload: tuple[str, ...]) -> WorkerPool:
+def processes_of(size: int, seconds: float, kinds: tuple[str, ...]) -> WorkerPool:
     """The processes of this worker of the cluster. Those of another kind end with their calls, as their pipes close."""
     # dask starts its workers as daemonic, which may have no children: these would outlive it. Ours end with it.
     multiprocessing.current_process().daemon = False
-    return WorkerPool(size, seconds, preload)
+    if not is_ready(kinds):
+        warm(size, kinds)
+    return WorkerPool(size, seconds, code_for(kinds))
 
 
 def call_there(

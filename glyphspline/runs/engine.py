@@ -13,11 +13,15 @@ import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
+from ..compiled import spend
 from ..errors import GlyphsplineError, OutputError
-from .pool import TimeLimitError, WorkerLostError, pool_size, sign_of_life
+from .choice import SAMPLE, choice_of, is_plain
+from .pool import TimeLimitError, WorkerLostError, WorkerPool, pool_size, sign_of_life
 
 AHEAD = 4
 """Chunks in flight for each worker, so that none waits while results are taken."""
@@ -33,7 +37,7 @@ class Item(NamedTuple):
     """A task that has been read.
 
     Attributes:
-        content: what :meth:`Job.together` takes. cost: its part of a batch's budget.
+        content: what :meth:`Job.together` takes. cost: its part of a batch's budget: segments and vertices.
         kind: items of one batch have the same.
     """
 
@@ -58,10 +62,12 @@ class Job(ABC, Generic[Task, Result]):
     Attributes:
         chunk: maximum number of tasks in a call: enough to make the exchange cheap, few enough for a smooth progress
             bar. budget: maximum cost of a batch. A worker's time limit and memory are for one batch.
+        settles: whether its tasks decide if a run compiles first.
     """
 
     chunk: ClassVar[int] = 40
     budget: ClassVar[float] = float("inf")
+    settles: ClassVar[bool] = True
 
     def read(self, tasks: Sequence[Task]) -> Sequence[Item | Exception]:
         """Read tasks, in a worker: an item for each, or why it cannot be read."""
@@ -114,10 +120,16 @@ def run(
         chunks: the tasks of each call, where they cannot be cut anywhere; ``total``: their number with those before.
     """
     total = before + len(tasks) if total is None else total
+    left = iter(() if chunks is None else chunks)
+    first = tasks or next(left, ())
+    settle(job, first, pool, total - before)
+    alone = is_plain(pool)  # a glyph takes seconds
     if chunks is None:
         # Chunks for each worker at least, so that the workers finish at about the same time.
-        chunks = slices(tasks, max(1, min(job.chunk, len(tasks) // (8 * pool_size(pool)))))
-    left, most = iter(chunks), AHEAD * pool_size(pool) * (2 if ordered else 1)
+        left = iter(slices(tasks, 1 if alone else max(1, min(job.chunk, len(tasks) // (8 * pool_size(pool))))))
+    elif first:
+        left = chain([first], left)
+    most = AHEAD * pool_size(pool) * (2 if ordered else 1)
     pending: list[tuple[Future[list[Part[Task, Result]]], Sequence[Task], int]] = []
     done, failed = before, 0
     try:
@@ -126,7 +138,7 @@ def run(
             k = next((k for k, future in enumerate(awaited) if future.done()), None)
             if k is None:
                 if len(pending) < most and (chunk := next(left, ())):
-                    pending.append((pool.submit(work, job, chunk), chunk, 1))
+                    pending.append((pool.submit(work, job, chunk, alone), chunk, 1))
                 elif pending:
                     wait(awaited, return_when=FIRST_COMPLETED)
                 else:
@@ -141,6 +153,8 @@ def run(
                     pending[k:k] = [(pool.submit(work, job, [task]), [task], trial + 1) for task in chunk]
                     continue
                 parts = [_failed(job, chunk[0], error)]
+            if alone and isinstance(pool, WorkerPool):  # this process counts its own time itself
+                spend(sum(part.seconds for part in parts))
             yield from parts
             done += len(chunk)
             failed += sum(part.failed for part in parts)
@@ -151,13 +165,34 @@ def run(
             future.cancel()
 
 
+def settle(job: Job[Task, Result], tasks: Sequence[Task], pool: Executor, left: int) -> None:
+    """Have a pool compile first, if it is not decided yet and what is left to do would take longer as plain Python.
+
+    Args:
+        tasks: some of those that are left, which stand for all. left: their number.
+    """
+    choice = choice_of(pool)
+    if choice is None or choice.is_made or not (job.settles and tasks):
+        return
+    choice.is_made = True
+    if choice.is_clear(left):
+        return
+    with suppress(GlyphsplineError):  # a task that ends its worker is reported when it is done
+        choice.take(left, pool.submit(costs_of, job, tasks[:: -(-len(tasks) // SAMPLE)]).result())
+
+
+def costs_of(job: Job[Task, Result], tasks: Sequence[Task]) -> list[float]:
+    """The costs of tasks, of those that can be read."""
+    return [item.cost for item in job.read(tasks) if isinstance(item, Item)]
+
+
 def slices(tasks: Sequence[Task], size: int) -> list[Sequence[Task]]:
     """Tasks in chunks of a size."""
     return [tasks[start : start + size] for start in range(0, len(tasks), size)]
 
 
-def work(job: Job[Task, Result], tasks: Sequence[Task]) -> list[Part[Task, Result]]:
-    """Do a chunk of tasks, in a worker; the results are in the tasks' order."""
+def work(job: Job[Task, Result], tasks: Sequence[Task], alone: bool = False) -> list[Part[Task, Result]]:
+    """Do a chunk of tasks, in a worker, in batches or each ``alone``; the results are in the tasks' order."""
     parts: list[Part[Task, Result]] = []
     batch: list[tuple[Task, Item]] = []
     cost = 0.0
@@ -174,7 +209,7 @@ def work(job: Job[Task, Result], tasks: Sequence[Task]) -> list[Part[Task, Resul
             parts.append(_failed(job, task, item))
             continue
         cost = (cost if batch else 0.0) + item.cost
-        if batch and (cost > job.budget or item.kind != batch[0][1].kind):
+        if batch and (alone or cost > job.budget or item.kind != batch[0][1].kind):
             finish()
             cost = item.cost
         batch.append((task, item))

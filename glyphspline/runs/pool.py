@@ -20,8 +20,10 @@ from contextlib import suppress
 from importlib import import_module
 from multiprocessing import forkserver, resource_tracker
 from multiprocessing.reduction import ForkingPickler
+from types import ModuleType
 from typing import Any
 
+from ..code_files import QUIET
 from ..errors import GlyphsplineError
 
 POLL = 0.25
@@ -29,7 +31,7 @@ POLL = 0.25
 
 STARTS, STARTING = 4, 1800.0
 """Processes in a row that may die while they start: somebody may have killed one, or there was no memory for it.
-Seconds in which a process has to start: compiling everything takes two minutes on an idle machine."""
+Seconds in which a process has to start."""
 
 CODE = os.path.realpath(__file__)
 """This file, which workers have to import too: those of another copy of the package would do other things."""
@@ -57,11 +59,6 @@ ASKED = "GLYPHSPLINE_PRELOAD"
 
 _last_sign: Any = None
 _limit = 0.0
-
-
-def code_for(kinds: Iterable[str]) -> list[str]:
-    """What to load for kinds of work of :mod:`.warm`."""
-    return [f"{__package__}.warm:{kind}" for kind in kinds]
 
 
 def load(items: Iterable[str]) -> None:
@@ -111,7 +108,7 @@ _is_ending = False
 
 
 def kill_all() -> None:
-    """Kill the workers of all pools, and the process from which they are forked, which may be compiling.
+    """Kill the workers of all pools, which may be compiling, and the process from which they are forked.
 
     No pool starts others from then on: this process is about to end.
     """
@@ -128,6 +125,7 @@ def kill_server() -> None:
     if server is not None:
         with suppress(OSError):
             os.kill(server, signal.SIGKILL)
+            os.waitid(os.P_PID, server, os.WEXITED | os.WNOWAIT)  # its end is for multiprocessing to take
 
 
 def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> None:
@@ -138,9 +136,8 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
     global _last_sign, _limit
     _last_sign, _limit = sign, seconds
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
+    os.environ[QUIET] = "1"  # the parent says what there is to say about compiling
     load(preload)
-    if compiled := sys.modules.get("glyphspline.compiled"):
-        compiled.observe(sign_of_life)  # a font has no say in how long compiling takes
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
     gc.enable()  # it may be off in the process from which this one is forked
     with suppress(EOFError, OSError):
@@ -159,13 +156,17 @@ def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> Non
 class _Worker:
     """One process, and this end of its pipe."""
 
-    def __init__(self, context: Any, seconds: float, preload: Sequence[str]) -> None:
+    def __init__(self, context: Any, seconds: float, preload: Sequence[str], with_main: bool) -> None:
         self.sign = context.RawValue("d", time.monotonic())
         self.calls, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, self.sign, seconds, preload), daemon=True)
+        main = sys.modules["__main__"]
         try:
+            if not with_main:
+                sys.modules["__main__"] = ModuleType("__main__")
             self.process.start()
         finally:
+            sys.modules["__main__"] = main
             theirs.close()
 
     def receive(self, seconds: float) -> Any:
@@ -199,14 +200,17 @@ class WorkerPool(ThreadPoolExecutor):
         preload: what to load before the first call, as :func:`load` takes it: once, in the process from which
             the workers are forked. If that runs already, for an earlier pool, each worker loads what it lacks.
         expected: number of calls known to come; processes for them start at once.
+        with_main: whether they import the main module, which has to be made for it: calls may be of its functions.
 
     Attributes:
         is_closed: whether it takes no more calls: it was closed, or its processes could not start.
     """
 
-    def __init__(self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0) -> None:
+    def __init__(
+        self, size: int, seconds: float, preload: Sequence[str] = (), expected: int = 0, *, with_main: bool = True
+    ) -> None:
         super().__init__(size)
-        self._seconds, self._preload = seconds, tuple(preload)
+        self._seconds, self._preload, self._with_main = seconds, tuple(preload), with_main
         self._context: Any = multiprocessing.get_context("spawn" if os.name == "nt" else "forkserver")
         self._processes: dict[int, _Worker] = {}  # by thread
         self._starting = threading.Lock()
@@ -228,10 +232,21 @@ class WorkerPool(ThreadPoolExecutor):
             raise self._error
         return super().submit(self._call, bytes(ForkingPickler.dumps((fn, args, kwargs))))
 
+    def renew(self, seconds: float, preload: Sequence[str]) -> None:
+        """Start processes anew, with another time limit and preload. No call may be under way."""
+        with self._starting:
+            self._seconds, self._preload = seconds, tuple(preload)
+            for worker in self._processes.values():
+                worker.end()
+            self._processes.clear()
+            if os.name != "nt":
+                kill_server()
+                start_forkserver(preload)
+
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Kill the processes; running and queued calls are lost."""
         self.is_closed = True
-        if wait and not self._is_ready:  # what workers import may be compiled for minutes yet, which no call waits for
+        if wait and not self._is_ready:  # no call waits for what workers import
             kill_server()
         for worker in [*self._processes.values()]:
             worker.process.kill()
@@ -268,7 +283,8 @@ class WorkerPool(ThreadPoolExecutor):
                 with self._starting:
                     if self._died and os.name != "nt":
                         start_forkserver(self._preload)
-                    worker = self._processes[thread] = _Worker(self._context, self._seconds, self._preload)
+                    started = _Worker(self._context, self._seconds, self._preload, self._with_main)
+                    worker = self._processes[thread] = started
                 if self.is_closed:
                     worker.end()
                 code = worker.receive(STARTING)

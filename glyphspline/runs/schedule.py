@@ -10,10 +10,13 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..code_files import kept
 from ..fitting.options import Options
 from ..types import Head
-from .pool import WorkerPool, code_for
+from .choice import SLOWNESS, Choice
+from .pool import WorkerPool
 from .spec import Limits, needs_fit
+from .warm import code_for, compile_kind, warm
 
 if TYPE_CHECKING:
     from ..readers import Source
@@ -42,8 +45,41 @@ def heads_of(source: Source, names: Iterable[str] | None = None) -> dict[str, He
     return {name: Head(name, gids[name], codes.get(name, ())) for name in chosen}
 
 
+PLAIN = ("glyphspline.runs.worker", "glyphspline.fitting.sharp.sharp_fit")
+"""Modules that workers need that run as plain Python."""
+
+
+class Workers(WorkerPool):
+    """Worker processes whose calls run as plain Python where no code is there, unless it pays to compile.
+
+    Time limits are for computing, not for being plain.
+    """
+
+    def __init__(self, size: int, seconds: float, kinds: Sequence[str], expected: int = 0) -> None:
+        self.choice = Choice(kinds, size, self._compile)
+        self._compiled_seconds = seconds
+        if self.choice.is_plain:
+            super().__init__(size, seconds * SLOWNESS, PLAIN, expected)
+        else:
+            super().__init__(size, seconds, code_for(kinds), expected)
+
+    def _compile(self) -> None:
+        """Compile what calls need, in as many processes, and start them anew."""
+        warm(self.choice.processes, self.choice.kinds)
+        self.renew(self._compiled_seconds, code_for(self.choice.kinds))
+
+
 class InProcess(Executor):
     """An executor that makes each call at once in this process: for notebooks and for debugging."""
+
+    def __init__(self, kinds: Sequence[str] = ()) -> None:
+        self.choice = Choice(kinds, 1, self._compile)
+
+    def _compile(self) -> None:
+        """Compile what calls need, here."""
+        for kind in self.choice.kinds:
+            compile_kind(kind)
+        kept.look_again(anew=True)
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Call the function now."""
@@ -81,6 +117,7 @@ def workers(
     kinds: Iterable[str] = (),
     expected: int = 0,
     *,
+    count: int = 1,
     scheduler: str | None = None,
     executor: Executor | None = None,
 ) -> AbstractContextManager[Executor]:
@@ -88,8 +125,9 @@ def workers(
 
     Args:
         seconds: time limit of a batch, after which its worker is killed.
-        kinds: of work, see :func:`kinds_for`; the compiled code that it needs is loaded before the first call.
-        expected: number of calls known to come.
+        kinds: of work, see :func:`kinds_for`; compiled code that it needs, and that is there, is loaded before the
+            first call. :func:`.engine.settle` may have it made.
+        expected: number of calls known to come. count: of sources whose tasks come.
         scheduler: address of a dask cluster, whose workers are used instead.
         executor: used instead of all these; it is not closed.
 
@@ -98,10 +136,12 @@ def workers(
     """
     if executor is not None:
         return nullcontext(executor)
+    kinds = tuple(kinds)
     if scheduler is not None:
         from .cluster import ClusterExecutor
 
-        return ClusterExecutor(scheduler, seconds, code_for(kinds))
-    if jobs == 0:
-        return InProcess()
-    return WorkerPool(jobs or os.cpu_count() or 1, seconds, code_for(kinds), expected)
+        return ClusterExecutor(scheduler, seconds, kinds)
+    size = jobs or os.cpu_count() or 1
+    made = InProcess(kinds) if jobs == 0 else Workers(size, seconds, kinds, expected)
+    made.choice.sources = count
+    return made

@@ -1,61 +1,86 @@
-"""Small runs that load, or else compile, all code of one kind of work before its time is limited.
+"""Compiling: all code of some kinds of work, in several processes; and loading it before a worker's time is limited.
 
-Workers are forked from a process that has done so. What no run here calls is compiled by the first command that needs
-it, so a new compiled function is called by one of these, and a test says so.
+A file beside the code, named by the kind, says that all of its code is there. It lists the sources that were compiled,
+so that neither they nor Numba have to be imported to know.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from concurrent.futures import as_completed
+import sys
+import time
+from collections.abc import Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, wait
+from contextlib import suppress
 from functools import cache
+from hashlib import blake2b
 from math import inf
 from pathlib import Path
-from typing import Any
 
-import numpy as np
+from .. import code_files
+from ..code_files import PACKAGE, SHIPPED, SUFFIX, kept, own_folder, tell, why_not_shipped
+from ..files import write_whole
 
-from ..fitting.options import Options
-from ..outlines.masters import DesignAxis, MasterContour, Masters
-from ..outlines.outline import Contour, Outline
+SAYING = 15.0
+"""Seconds between two lines about what is compiled."""
 
-SQUARE = Contour(np.array([[0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
-TIP = Contour(np.array([[100, 50], [160, 20], [160, 80], [200, 80], [160, 80]]), np.ones(5, dtype=np.int64))
-"""Touches the square, and itself."""
+MARK = ".kind"
 
-LEAF = Contour(np.array([[0.0, 0], [60, 0], [100, 40], [100, 100], [40, 100], [0, 60]]), np.array([3, 3]))
 
-DISC = Contour(
-    np.array([
-        [90.0, 0], [90, 50], [50, 90], [0, 90], [-50, 90], [-90, 50], [-90, 0], [-90, -50], [-50, -90], [0, -90],
-        [50, -90], [90, -50],
-    ]),
-    np.full(4, 3),
-)  # fmt: skip
-"""Needs a spline of several spans in the sharp mode, whose fit takes longest to compile."""
+def is_ready(kinds: Iterable[str]) -> bool:
+    """Whether all code of some kinds of work is there: the wheel's, or some compiled here."""
+    if code_files.is_off():
+        return False
+    folders = [*code_files.places(), *([] if why_not_shipped() else [SHIPPED])]
+    names = [folder / name for folder in folders for name in code_files.names_in(folder, MARK)]
+    return all(any(_holds(name) for name in names if name.name.rpartition("-")[0] == kind) for kind in kinds)
 
-KNOT = Contour(
-    np.array([
-        [262.0, 298], [814, 92], [600, 729], [188, 55], [275, 657], [562, 150], [433, 669], [423, 633], [967, 683],
-    ]),
-    np.full(3, 3),
-)  # fmt: skip
-"""Crosses itself, and is fitted again more than once."""
 
-ROUND = Contour(
-    np.array([
-        [300.0, 0], [300, 120], [210, 210], [120, 300], [0, 300], [-120, 300], [-210, 210], [-300, 120], [-300, 0],
-        [-300, -300], [0, -300], [200, -300], [280, -100], [300, -50],
-    ]),
-    np.array([2, 2, 2, 2, 2, 2, 1, 1]),
-)  # fmt: skip
-"""Quadratics, as TrueType has them."""
+def warm(jobs: int | None = None, kinds: Sequence[str] | None = None) -> None:
+    """Compile every function that is not kept yet, in several processes; this one uses the code from then on.
 
-SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
+    A line every few seconds says how far it is.
 
-AXES = (DesignAxis("wght", "Weight", 0, 0, 1),)
-REGIONS = np.array([[[0.0, 1.0, 1.0]]])
+    Args:
+        jobs: processes; None takes all cores.
+        kinds: of work that comes, see :data:`.small_runs.WORK`; None: all.
+
+    Raises:
+        GlyphsplineError: a process died.
+    """
+    from .pool import WorkerPool
+    from .small_runs import WORK
+
+    left = [kind for kind in WORK if not is_ready([kind]) and (kinds is None or kind in kinds)]
+    if not left:
+        return
+    folder, size, started = own_folder(), min(jobs or os.cpu_count() or 1, len(left)), time.monotonic()
+    before = _number_in(folder)
+    tell("compiling once, some minutes (%s); kept in %s", why_not_shipped() or "sources changed", folder or "no folder")
+    with WorkerPool(size, inf, expected=size, with_main=False) as pool:  # a script may call this without a guard
+        calls = {pool.submit(compile_kind, kind) for kind in left}
+        while calls:
+            done, calls = wait(calls, SAYING, FIRST_COMPLETED)
+            for call in done:
+                call.result()
+            numbers = _number_in(folder) - before, len(left) - len(calls), len(left), time.monotonic() - started
+            tell("compiling: %d functions, %d of %d kinds of work, %.0f s", *numbers)
+    kept.look_again(anew=True)
+
+
+def compile_kind(kind: str) -> None:
+    """Compile what is not kept of a kind of work, and mark the kind."""
+    from . import small_runs
+
+    with kept.compiling():
+        prepare(kind)
+        sources = {str(small_runs.__file__)}.union(*map(code_files.sources_of, kept.asked))
+    if (folder := own_folder()) is None:
+        return
+    lines = [f"{code_files.digest(file)} {Path(file).relative_to(PACKAGE).as_posix()}\n" for file in sorted(sources)]
+    content = "".join([_made_by(), *lines]).encode()
+    with suppress(OSError):
+        write_whole(str(folder / f"{kind}-{blake2b(content, digest_size=16).hexdigest()}{MARK}"), content)
 
 
 @cache
@@ -63,203 +88,29 @@ def prepare(kind: str) -> None:
     """Do the small runs of a kind of work, once in a process, with what reads outlines and all modules of a worker."""
     from ..readers.opentype.bulk import load_compiled
     from . import worker  # noqa: F401
+    from .small_runs import WORK
 
     load_compiled()
     WORK[kind]()
 
 
-def is_kept() -> bool:
-    """Whether compiled code seems to be there: the wheel's, or some that is newer than all source files.
-
-    A guess, which takes a hundredth of the time that importing the compiler does.
-    """
-    package = Path(__file__).parents[1]
-    if (package / "_compiled" / "made_for.json").exists():
-        return True
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or package / "__pycache__" / "compiled")
-    kept = max((file.stat().st_mtime for file in folder.glob("*.nbc")), default=0.0)
-    return all(file.stat().st_mtime < kept for file in package.rglob("*.py"))
+def code_for(kinds: Iterable[str]) -> list[str]:
+    """What a worker loads for kinds of work, see :func:`.pool.load`."""
+    return [f"{__name__}:{kind}" for kind in kinds]
 
 
-def warm(
-    jobs: int | None = None, observer: Callable[[int, int], None] | None = None, kinds: Sequence[str] | None = None
-) -> None:
-    """Compile every function that is not kept yet, in several processes.
-
-    Args:
-        jobs: processes; None takes all cores.
-        kinds: of work that comes; None: all.
-        observer: called with the number of kinds of work that are done and of all, after each.
-
-    Raises:
-        GlyphsplineError: a process died.
-    """
-    from .pool import WorkerPool
-
-    kinds = list(WORK) if kinds is None else kinds
-    size = min(jobs or os.cpu_count() or 1, len(kinds))
-    with WorkerPool(size, inf, expected=size) as pool:
-        calls = [pool.submit(_prepare_quietly if k else prepare, kind) for k, kind in enumerate(kinds)]
-        for done, call in enumerate(as_completed(calls), start=1):
-            call.result()
-            if observer:
-                observer(done, len(kinds))
+def _number_in(folder: Path | None) -> int:
+    return 0 if folder is None else len(code_files.names_in(folder, SUFFIX))
 
 
-def _prepare_quietly(kind: str) -> None:
-    """Prepare without saying that code is being compiled, which the process for the first kind says."""
-    from ..compiled import QUIET
-
-    os.environ[QUIET] = "1"
-    prepare(kind)
+def _made_by() -> str:
+    return f"{code_files.numba_version()} {sys.implementation.cache_tag}\n"
 
 
-def converted(options: Options) -> Any:
-    """Convert shapes with and without corners, and draw them, as a worker does."""
-    from ..fitting.convert import convert
-    from ..writers.svg.document import to_svg
-
-    result = convert(SHAPES, options)
-    to_svg(result)
-    return result
-
-
-def interpolations() -> None:
-    """The interpolation of a polygon by itself, in all its kinds."""
-    from ..interpolation.api import interpolate, interpolate_many, interpolate_vertex
-
-    interpolate(SQUARE.points)
-    interpolate_many([SQUARE.points])
-    interpolate(SQUARE.points, closed=False)
-    interpolate(SQUARE.points, 4)
-    interpolate(SQUARE.points, degree=4)
-    interpolate(SQUARE.points, knots=np.arange(5.0))
-    interpolate_vertex(SQUARE.points, 0)
-    interpolate(np.eye(4))
-
-
-def drawings() -> None:
-    """Curvature maps, and what the gallery shows."""
-    from ..fitting.results import as_glyph
-    from ..writers.svg.curvature_map import to_curvature_svg
-    from ..writers.svg.document import polygon_document
-
-    to_curvature_svg(as_glyph(SHAPES))  # before anything is fitted: another process may be compiling that
-    glyph = converted(Options(step=20.0))
-    to_curvature_svg(glyph)
-    polygon_document(glyph)
-
-
-def quadratics() -> None:
-    """What a TTF stores."""
-    from ..fitting.sharp.font_points import quadratic_points
-
-    options = Options(corners="sharp", continuity="g2")
-    quadratic_points(Outline("round", contours=(ROUND,)).arrays, options, 1.0, 1000.0)
-
-
-def masters() -> None:
-    """Masters as one curve, with arcs that fail the certificate at first and one that ends on a slanted line."""
-    from ..curves.nearest import near_places
-    from ..fitting.convert_masters import convert_masters
-    from ..readers.pens import ContourPen
-
-    bow = np.array([[100, 0], [100, 500], [100, 700], [500, 650], [500, 400], [500, 0]], dtype=np.float64)
-    bold = np.array([[100, 0], [220, 500], [250, 625], [500, 650], [500, 300], [500, 0]], dtype=np.float64)
-    disc = MasterContour(np.stack([DISC.points * 3, DISC.points[:, ::-1] * [2.0, -5.0]]), DISC.degrees)
-    slanted = MasterContour(np.stack([bow, bold]), np.array([1, 3, 1, 1]))
-    family = Masters("shapes", axes=AXES, regions=REGIONS, contours=(disc, slanted), advances=np.ones(2))
-    result = convert_masters(family, Options(tolerance=0.3))
-    result.energy_ratio({"wght": 0.5})
-    result.turn({"wght": 0.5})
-    ContourPen(masters=2).contour(slanted.points, slanted.degrees)  # as readers draw contours outside bulk passes
-    curves, hints, skip = LEAF.cubics(), np.arange(float(len(LEAF))), np.zeros(len(LEAF), dtype=np.bool_)
-    near_places(1, curves, hints, curves, skip, True, 0.0, 0.0, hints)  # as moved points are certified
-
-
-def checks() -> None:
-    """Checks of outlines, of one font and along an axis."""
-    from ..checks.check import check
-    from ..checks.kinds import Thresholds
-    from ..checks.on_axes import on_axes
-
-    check(SHAPES)
-    check(Outline("twice", contours=(KNOT, KNOT)))
-    disc = MasterContour(np.stack([DISC.points, DISC.points * 2]), DISC.degrees)
-    family = Masters("disc", axes=AXES, regions=REGIONS, contours=[disc], advances=np.ones(2))
-    on_axes([family], {}, ["wght"], 2, Thresholds())
-
-
-def mending() -> None:
-    """A kink mended, of an outline, which is one master."""
-    from ..mending.mend import mend
-
-    checks()
-    points = np.array([[0.0, 0], [0, 262], [161, 563], [300, 500], [424, 435], [600, 292], [600, 0]])
-    mend(Outline("kink", contours=(Contour(points, np.array([3, 3, 1])),)), tolerance=5.0)
-
-
-def comparisons() -> None:
-    """Outlines compared: one that lacks a contour, one with a contour turned round, so that it has other ink."""
-    from ..comparing.compare import compare
-
-    compare(SHAPES, Outline("shapes", contours=(LEAF.reversed(), SQUARE, DISC)))
-    ring, filled = ((DISC, Contour(0.5 * inner.points, inner.degrees)) for inner in (DISC.reversed(), DISC))
-    compare(Outline("ring", contours=ring), Outline("filled", contours=filled))
-
-
-def unfitted() -> None:
-    """What a run needs that fits nothing: reading outlines, and drawing them as they are."""
-    from ..fitting.results import as_glyph
-    from ..writers.svg.document import to_svg
-
-    to_svg(as_glyph(SHAPES))
-
-
-def points() -> None:
-    """Rows of data sets: canonical outlines, and points at equal arc lengths or at vertices."""
-    from ..fitting.results import as_glyph
-    from ..outlines.canonical_outlines import canonical_outlines
-    from ..outlines.resampling import at_vertices, resampled
-
-    both = (Outline("in order", contours=(SQUARE, DISC)), Outline("other order", contours=(LEAF, DISC)))
-    canonical_outlines([SHAPES, *both])
-    arrays = as_glyph(SHAPES).arrays
-    resampled(arrays.curves, 8, float(np.radians(30.0)))
-    at_vertices(arrays.curves, arrays.polygons, float(np.radians(30.0)))
-
-
-def rest() -> None:
-    """What single options or measures need: united contours, joins, unlike masters, bent text."""
-    from ..fitting.sharp.cubics import fit_cubic
-    from ..matching.cuts import common_cuts
-    from ..matching.landmarks import Landmarks
-    from ..outlines.joins import joins
-    from ..outlines.overlaps import inked_area
-
-    inked_area([DISC, LEAF])
-    joins(LEAF)
-    common_cuts(Landmarks(LEAF, 1000.0), Landmarks(LEAF, 1000.0))
-    fit_cubic(LEAF.points[:4], np.eye(2), (False, False), 1.0, 1, np.empty((2, 2)))
-
-
-WORK: dict[str, Callable[[], Any]] = {
-    "sharp": lambda: converted(Options(tolerance=0.3)),  # pieces fail the certificate
-    "interpolation": interpolations,
-    "checks": checks,
-    "comparing": comparisons,
-    "points": points,
-    "rest": rest,
-    "drawings": drawings,
-    "smooth": lambda: converted(Options(corners="smooth")),
-    "masters": masters,
-    "smooth_best": lambda: converted(Options(corners="smooth", effort="best")),
-    "g2": lambda: converted(Options(corners="sharp", continuity="g2", tolerance=0.3)),
-    "quadratics": quadratics,
-    "sharp_best": lambda: converted(Options(effort="best")),
-    "fixed": lambda: converted(Options(step=20.0)),
-    "mending": mending,
-    "unfitted": unfitted,
-}
-"""The kinds of work. Those that take long come first, and neighbours share little: two processes that begin together
-seldom compile the same function."""
+def _holds(mark: Path) -> bool:
+    """Whether the sources are as they were when a mark was made."""
+    with suppress(OSError):
+        made_by, *lines = mark.read_text(encoding="utf-8").splitlines(keepends=True)
+        known = map(str.split, lines)
+        return made_by == _made_by() and all(code_files.digest(str(PACKAGE / file)) == own for own, file in known)
+    return False

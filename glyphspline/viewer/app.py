@@ -135,7 +135,7 @@ def make_app(path: Path, face_index: int = 0, *, hosts: Iterable[str]) -> Starle
         Route("/static/{name}", static),
         Route("/api/font", _answer(lambda request: font_facts(work))),
         Route("/api/glyphs", _answer(lambda request: search(work.font, request.query_params.get("words", "")[:200]))),
-        Route("/api/compiling", _answer(lambda request: {"words": compiled.progress()})),
+        Route("/api/compiling", _answer(lambda request: {"words": compiled.hint()})),
         *(Route(f"/api/{name}", _computed(work, make), methods=["POST"]) for name, make in ANSWERS.items()),
     ]
     return Starlette(routes=routes, middleware=[Middleware(BaseHTTPMiddleware, dispatch=partial(guard, tuple(hosts)))])

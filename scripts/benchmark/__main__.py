@@ -7,7 +7,7 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-OWN = ("core", "startup", "faithful", "fonts", "rings", "batch", "check", "text", "dataset", "viewer")
+OWN = ("core", "startup", "plain", "faithful", "fonts", "rings", "batch", "check", "text", "dataset", "viewer")
 SUITES = {name: f"{name}.rows" for name in OWN}
 SUITES |= {"formats": "batch.formats", "dataset_runs": "dataset.runs"}
 

@@ -15,27 +15,31 @@ from pathlib import Path
 import numba
 from numba.core.registry import cpu_target
 
-from glyphspline import compiled
-from glyphspline.runs.warm import WORK, prepare, warm
+from glyphspline.code_files import PACKAGE, names_in, own_folder
+from glyphspline.compiling import used
+from glyphspline.runs.small_runs import WORK
+from glyphspline.runs.warm import MARK, compile_kind, warm
 
 
 def main() -> None:
     """The command."""
     folder, features = Path(sys.argv[1]), json.loads(sys.argv[2])
-    assert folder.parent == compiled.PACKAGE
-    kept = compiled.own_folder()
+    assert folder.parent == PACKAGE
+    kept = own_folder()
     assert kept
     if "SOURCE_DATE_EPOCH" not in os.environ:  # names in the code count what a process has compiled before
         warm()
     for kind in WORK:
-        prepare(kind)
+        compile_kind(kind)
     target = cpu_target.target_context.codegen().magic_tuple()
     if features is None:
         features = [name[1:] for name in target[2].split(",") if name.startswith("+")]
     folder.mkdir()
-    for name in sorted(compiled.used):
+    for name in sorted(used):
         if ".inner-" not in name:
             (folder / name).write_bytes(without_addresses((kept / name).read_bytes(), name))
+    for name in names_in(kept, MARK):
+        (folder / name).write_bytes((kept / name).read_bytes())
     made_for = {
         "numba": numba.__version__,
         "python": sys.implementation.cache_tag,

@@ -22,7 +22,7 @@ from glyphspline.fitting.sharp.sharp_fit import chords
 from glyphspline.outlines.outline import Contours
 from glyphspline.outlines.overlaps import remove_overlaps
 from glyphspline.outlines.segments import all_cubics
-from glyphspline.runs.warm import converted
+from glyphspline.runs.small_runs import converted
 from glyphspline.types import FloatArray
 from scripts.paper.measures import shape
 from tests.places import GYOSHO as FONT

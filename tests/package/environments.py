@@ -104,21 +104,10 @@ def look(place: Path, extra: str, converts: bool) -> None:
     run(command, "info", ROOT / "fonts_test" / "variable.ttf", cwd=place)
     if converts:
         font = ROOT / "fonts_test" / "kouzan-gyosho.ttf"
-        share_compiled_code(place)
         options = ["--text", "O", "--step", "90", "--format", "svg,gallery", "--jobs", "1"]
         run(command, "convert", font, *options, "--out", "out", cwd=place)
         assert (place / "out" / "index.html").is_file()
         assert list((place / "out" / "svg").glob("*.svg"))
-
-
-def share_compiled_code(place: Path) -> None:
-    """Copy the compiled code of the repository, if there is any, to the installed package; the tests try compiling."""
-    (installed,) = place.glob("[Ll]ib/**/site-packages/glyphspline")
-    for file in (ROOT / "glyphspline").rglob("*.nb[ci]"):
-        copy = installed / file.relative_to(ROOT / "glyphspline")
-        if copy.parent.parent.is_dir():
-            copy.parent.mkdir(exist_ok=True)
-            shutil.copy(file, copy)
 
 
 def found_pythons() -> dict[str, str]:

@@ -87,6 +87,32 @@ def test_every_glyph_is_as_the_pen_has_it(file: str | Path, face_index: int, loc
     assert assert_all_same(open_font(FONTS / file, face_index, location)) == 0
 
 
+@pytest.mark.parametrize(("file", "face_index", "location"), FACES)
+def test_callbacks_of_plain_python_draw_the_same(
+    file: str | Path, face_index: int, location: dict[str, float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bulk, "_are_compiled", lambda: False)
+    assert_all_same(open_font(FONTS / file, face_index, location), 40)
+
+
+def test_a_callback_that_raises_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """HarfBuzz's bindings print what a callback raises, and go on with half a glyph."""
+    font, record = open_font(FONTS / "kouzan-gyosho.otf"), bulk._record
+
+    def failing(buffer: Any, kind: int, coordinates: Any) -> None:
+        if kind == 3 and buffer[bulk.USED] > 40:
+            raise ZeroDivisionError("of all things")
+        record(buffer, kind, coordinates)
+
+    expected = font.outline("A")
+    monkeypatch.setattr(bulk, "_are_compiled", lambda: False)
+    monkeypatch.setattr(bulk, "_record", failing)
+    with pytest.raises(ZeroDivisionError, match="of all things"):
+        font.outline("A")
+    monkeypatch.setattr(bulk, "_record", record)
+    assert_same(font.outline("A"), expected)
+
+
 def counting(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The names of glyphs that are drawn again from now on."""
     read: list[str] = []

@@ -216,7 +216,15 @@ def is_there(process: int) -> bool:
 @pytest.mark.skipif(os.name == "nt", reason="processes that are spawned get the parent's path")
 def test_workers_with_other_code_are_an_error(tmp_path: Path) -> None:
     package = tmp_path / "elsewhere" / "glyphspline"
-    for file in ("__init__.py", "__init__.pyi", "_version.py", "errors.py", "runs/__init__.py", "runs/pool.py"):
+    for file in (
+        "__init__.py",
+        "__init__.pyi",
+        "_version.py",
+        "errors.py",
+        "code_files.py",
+        "runs/__init__.py",
+        "runs/pool.py",
+    ):
         (package / file).parent.mkdir(parents=True, exist_ok=True)
         (package / file).write_bytes((ROOT / "glyphspline" / file).read_bytes())
     program = (
@@ -229,6 +237,6 @@ def test_workers_with_other_code_are_an_error(tmp_path: Path) -> None:
     )
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment)
-    own = f"{package}/runs/pool.py"  # later versions of Python hand the parent's path on
-    assert ran.stdout in (f"worker {own}\n", f"workers run other code, {ROOT}/glyphspline/runs/pool.py, not {own}: "
+    code = f"{package}/runs/pool.py"  # later versions of Python hand the parent's path on
+    assert ran.stdout in (f"worker {code}\n", f"workers run other code, {ROOT}/glyphspline/runs/pool.py, not {code}: "
                           "set PYTHONPATH to its folder\n"), ran.stderr  # fmt: skip

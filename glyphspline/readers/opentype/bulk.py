@@ -1,8 +1,9 @@
-"""Outlines of many glyphs in one compiled pass, from HarfBuzz's callbacks to contours end to end.
+"""Outlines of many glyphs in one pass, from HarfBuzz's callbacks to contours end to end.
 
-HarfBuzz calls compiled functions, which record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
-2 quadratic, 3 cubic) and the points after the current one. A compiled pass over the buffer makes contours of them, by
-the rules of :class:`~glyphspline.readers.pens.ContourPen`. Glyphs that are too large, or whose drawing is incomplete,
+HarfBuzz calls functions that record its drawing operations as numbers in a buffer: the kind (0 move, 1 line,
+2 quadratic, 3 cubic) and the points after the current one. They are compiled, or else Python's, which HarfBuzz hands a
+:class:`Drawing`. A pass over the buffer makes contours of them, by the rules of
+:class:`~glyphspline.readers.pens.ContourPen`. Glyphs that are too large, or whose drawing is incomplete,
 are drawn again with that pen by fontTools, which reports what is wrong. HarfBuzz leaves out what it cannot read without
 an error.
 """
@@ -10,7 +11,7 @@ an error.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache, cached_property, partial
 from itertools import pairwise
 from pathlib import Path
@@ -19,7 +20,6 @@ from typing import Any
 
 import numpy as np
 import uharfbuzz as hb
-from numba import types
 
 from ...compiled import callback, compiled
 from ...outlines.contour_arrays import ContourArrays
@@ -46,10 +46,10 @@ UNUSUAL, UNCOUNTED = -1, -2
 """In place of a number of contours: fontTools has to read the glyph; the number is unknown."""
 
 
-def _drawing(points: int) -> Any:
-    """The signature of a drawing operation: functions, buffer, state, coordinates, user data."""
-    buffer = types.CPointer(types.double)
-    return types.void(types.intp, buffer, types.intp, *(types.float32,) * (2 * points), types.intp)
+def _drawing(points: int) -> str:
+    """The types of a drawing operation: functions, buffer, state, coordinates, user data."""
+    coordinates = ", ".join(["float32"] * (2 * points))
+    return f"void(intp, CPointer(double), intp, {coordinates}, intp)"
 
 
 @compiled
@@ -83,20 +83,58 @@ def _cubic(
     _record(buffer, 3, (ax, ay, bx, by, x, y))
 
 
+CALLBACKS = _point, _point, _quadratic, _cubic
+"""What HarfBuzz calls for an operation of each kind. There is none for closing a path, as every path is closed."""
+
+
+class Drawing:
+    """The buffer as the callbacks of plain Python get it. HarfBuzz's bindings swallow what these raise: it is kept."""
+
+    def __init__(self, buffer: FloatArray) -> None:
+        self._buffer = buffer
+        self._error: BaseException | None = None
+
+    def record(self, kind: int, coordinates: tuple[float, ...]) -> None:
+        """Write an operation into the buffer."""
+        try:
+            _record(self._buffer, kind, coordinates)
+        except BaseException as error:
+            self._error = error
+
+    def check(self) -> None:
+        """Raise what a callback has raised."""
+        if self._error is not None:
+            error, self._error = self._error, None
+            raise error
+
+
+def _recorder(kind: int) -> Callable[..., None]:
+    """A callback in Python: the drawing comes last, after the coordinates."""
+    return lambda *arguments: arguments[-1].record(kind, arguments[:-1])
+
+
 def _capsule(address: int | None) -> Any:
     make = ctypes.pythonapi.PyCapsule_New
     make.restype, make.argtypes = ctypes.py_object, [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p]
     return make(address, None, None)
 
 
+def _are_compiled() -> bool:
+    """Whether HarfBuzz can call compiled functions."""
+    return all(one.address is not None for one in CALLBACKS)
+
+
 @cache
-def _functions() -> Any:
-    """The callbacks for HarfBuzz, without one for closing a path, as every path is closed."""
+def _functions(are_compiled: bool) -> Any:
+    """The callbacks for HarfBuzz."""
     functions = hb.DrawFuncs()
-    functions.set_move_to_func(_capsule(_point.address), _capsule(1))
-    functions.set_line_to_func(_capsule(_point.address), _capsule(2))
-    functions.set_quadratic_to_func(_capsule(_quadratic.address))
-    functions.set_cubic_to_func(_capsule(_cubic.address))
+    calls: list[Any] = [(_recorder(kind),) for kind in range(4)]
+    if are_compiled:  # user data tells moves and lines apart
+        calls = [(_capsule(one.address), _capsule(kind + 1)) for kind, one in enumerate(CALLBACKS)]
+    functions.set_move_to_func(*calls[0])
+    functions.set_line_to_func(*calls[1])
+    functions.set_quadratic_to_func(*calls[2])
+    functions.set_cubic_to_func(*calls[3])
     return functions
 
 
@@ -216,7 +254,7 @@ def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
 
 def load_compiled() -> None:
     """Load the compiled code, which takes some tenths of a second, before a font is opened."""
-    _functions()
+    _are_compiled()
     _record(np.zeros(LONGEST), 0, (0.0, 0.0))  # for Python: the callbacks have code of their own
     none = np.empty(0, dtype=np.int64)
     _contours(np.zeros(FIRST), np.array([FIRST]), none)
@@ -234,7 +272,7 @@ class BulkReader:
         self._path, self._face, self._size = path, face, size
         self._buffer = np.zeros(SIZE)
         self._buffer[CAPACITY] = SIZE
-        self._pointer = _capsule(self._buffer.ctypes.data)
+        self._pointer, self._drawing = _capsule(self._buffer.ctypes.data), Drawing(self._buffer)
         self._lock = Lock()
 
     def outlines(self, heads: Sequence[Head], metrics: FontMetrics) -> list[OutlineOrError]:
@@ -277,12 +315,14 @@ class BulkReader:
         expected = np.full(len(gids), UNCOUNTED, dtype=np.int64)
         if self._records is not None:
             expected = _expected(*self._records, np.array(gids, dtype=np.int64))
-        draw, functions, used = self._face.font.draw_glyph, _functions(), self._buffer.data
+        draw, used, are_compiled = self._face.font.draw_glyph, self._buffer.data, _are_compiled()
+        functions, to = _functions(are_compiled), self._pointer if are_compiled else self._drawing
         used[USED] = FIRST
         places: list[float] = [FIRST]
         for gid, count in zip(gids, expected.tolist(), strict=True):
             if count > 0 or count == UNCOUNTED:
-                draw(gid, functions, self._pointer)
+                draw(gid, functions, to)
+                self._drawing.check()
             places.append(used[USED])
             if used[USED] > self._size:
                 break

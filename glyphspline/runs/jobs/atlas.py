@@ -21,6 +21,7 @@ from ...writers.figures.axis_pages import axis_pages
 from ...writers.figures.basics import write_pages
 from ...writers.settings import BOTH, Maps
 from ...writers.svg.comb import curvature_scale
+from ..choice import USUAL
 from ..engine import Item, Job, Observer, reason, run
 from ..schedule import Place, kinds_for, place_of, sources, workers
 from ..spec import LIMITS
@@ -62,7 +63,7 @@ class AtlasJob(Job[str, Converted]):
         from ..worker import items
 
         if self.masters:
-            return [Item(name) for name in tasks]
+            return [Item(name, USUAL) for name in tasks]
         (source,) = sources(self.place)
         return items(source.outlines(tasks, errors="return"), self.options, LIMITS)
 

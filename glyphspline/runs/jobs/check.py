@@ -137,7 +137,7 @@ class AxesJob(CheckJob):
 
 def _item(glyph: Outline | Masters, segments: int) -> Item | Exception:
     """A glyph that is checked with others of its em; one that is too large is an error."""
-    return LIMITS.error_of(segments) or Item(glyph, kind=glyph.metrics.units_per_em)
+    return LIMITS.error_of(segments) or Item(glyph, segments, glyph.metrics.units_per_em)
 
 
 def _shapes(glyphs: Sequence[Outline | Masters], rows: Measured) -> IntArray:
@@ -363,7 +363,7 @@ def check_fonts(
     """
     if alone:
         face_index = face_index or 0
-    with workers(jobs, kinds=["checks"], expected=1, executor=executor) as pool:
+    with workers(jobs, kinds=["checks"], expected=1, count=len(fonts), executor=executor) as pool:
         for font in fonts:
             try:
                 for source in faces_of(font, location, face_index):

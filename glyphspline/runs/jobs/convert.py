@@ -26,7 +26,7 @@ from ...types import Names, counted, shortened
 from ...writers.formats import format_named
 from ...writers.read_back import Held, Promise, held
 from ...writers.svg.comb import combs
-from ..engine import Item, Job, Observer, reason, run
+from ..engine import Item, Job, Observer, reason, run, settle
 from ..file_names import file_names
 from ..folder import (
     JOURNAL,
@@ -164,6 +164,7 @@ def convert_font(
             tasks = tasks_of(source, glyphs, spec.names)
             left = [task for task in tasks if task.head.gid not in finished]
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
+            settle(job, left, pool, len(left))  # before the scale, which is of a sample
             job = with_scale(job, source, glyphs, tasks, pool)
             for part in recorded(job, left, pool, record, out, observer, rows):
                 for glyph in part.result:

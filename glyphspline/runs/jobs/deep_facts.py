@@ -36,7 +36,7 @@ class FactsJob(Job[int, dict[str, Any]]):
             read = source.outlines(tasks, errors="return")
         except GlyphsplineError as error:
             return [error] * len(tasks)
-        return [Item(each) if isinstance(each, Outline) else each for each in read]
+        return [Item(each, len(each.arrays.degrees)) if isinstance(each, Outline) else each for each in read]
 
     def together(self, tasks: Sequence[int], contents: Sequence[Any]) -> dict[str, Any]:
         """Facts from the outlines of glyphs: counts, and unusual glyphs by name.

@@ -35,7 +35,8 @@ from ...writers.font.master_deltas import Redrawn, StoredGlyph, bound_of
 from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
-from ..engine import Job, Observer, reason
+from ..choice import USUAL
+from ..engine import Item, Job, Observer, reason
 from ..folder import (
     Done,
     Output,
@@ -73,6 +74,10 @@ class MastersJob(Output, Job[Task, list[Done]]):
     options: Options
 
     budget = 1.0
+
+    def item(self, task: Task) -> Item:
+        """A glyph, which is read when it is converted."""
+        return Item(task, USUAL)
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """Convert one glyph, store its result and write its drawings: those of the default master."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from ...errors import GlyphsplineError, OptionError
@@ -21,7 +21,8 @@ from ...typesetting.placed import LEFT_OUT, Layout
 from ...writers.formats import format_named
 from ...writers.settings import PLAIN_MAPS, Maps, Settings, paper_length
 from ...writers.svg.path_data import curves_data
-from ..engine import Item, Job, reason, run, work
+from ..choice import is_plain
+from ..engine import Item, Job, reason, run, settle, work
 from ..pool import TimeLimitError, WorkerLostError, sign_of_life
 from ..schedule import Place, place_of, sources
 from ..spec import LIMITS, MAPS
@@ -37,6 +38,7 @@ class TextJob:
         settings: of the drawings. each_glyph: each glyph is an element of an SVG drawing.
         fit_width: length of all ink of the lines with its unit, which makes the size; None: that of ``settings``.
         maps: what curvature maps show.
+        alone: whether each glyph is a batch.
     """
 
     layout: Layout
@@ -46,6 +48,7 @@ class TextJob:
     each_glyph: bool = False
     fit_width: str | None = None
     maps: Maps = PLAIN_MAPS
+    alone: bool = False
 
 
 class Drawings(NamedTuple):
@@ -84,9 +87,9 @@ class FitJob(Job[Outline, list[GlyphResult | GlyphsplineError]]):
         return [error if isinstance(error, GlyphsplineError) else GlyphsplineError(reason(error), glyph=task.name)]
 
 
-def fitted(outlines: Sequence[Outline], options: Options) -> list[GlyphResult | GlyphsplineError]:
-    """The results of outlines, or their errors, with a sign of life after each batch."""
-    return [result for part in work(FitJob(options), outlines) for result in part.result]
+def fitted(outlines: Sequence[Outline], options: Options, alone: bool) -> list[GlyphResult | GlyphsplineError]:
+    """The results of outlines, or their errors, with a sign of life after each batch, or each outline ``alone``."""
+    return [result for part in work(FitJob(options), outlines, alone) for result in part.result]
 
 
 @dataclass(frozen=True)
@@ -98,12 +101,20 @@ class TrialJob(Job[tuple[int, int], str | None]):
 
     chunk = 1
 
+    def item(self, task: tuple[int, int]) -> Item:
+        """A glyph, with the segments that it has if it can be read."""
+        (outline,) = self._read(task)
+        return Item(task, 0.0 if isinstance(outline, GlyphsplineError) else len(outline.arrays.degrees))
+
+    def _read(self, task: tuple[int, int]) -> list[Outline | GlyphsplineError]:
+        font, gid = task
+        return list(sources(*self.places)[font].outlines([gid], errors="return"))
+
     def together(self, tasks: Sequence[tuple[int, int]], contents: Sequence[Any]) -> None:
         """Nothing: a glyph that can be read and fitted, or has an error of its own, is for the text."""
-        ((font, gid),) = tasks
-        (outline,) = sources(*self.places)[font].outlines([gid], errors="return")
+        (outline,) = self._read(tasks[0])
         if not isinstance(outline, GlyphsplineError):
-            fitted([outline], self.options)
+            fitted([outline], self.options, alone=True)
 
     def failed(self, task: tuple[int, int], error: Exception) -> str:
         """Why a glyph cannot be in the text."""
@@ -116,12 +127,14 @@ def draw(job: TextJob, pool: Executor) -> Drawings:
     Raises:
         GlyphsplineError: as :func:`drawings`; or the text takes too long, and none of its glyphs does.
     """
+    layout = job.layout
+    trial, glyphs = TrialJob(tuple(map(place_of, layout.fonts)), job.options), layout.distinct()
+    settle(trial, glyphs, pool, len(glyphs))
+    job = replace(job, alone=is_plain(pool))
     try:
         return pool.submit(drawings, job).result()
     except (TimeLimitError, WorkerLostError):
-        layout = job.layout
-        trial = TrialJob(tuple(map(place_of, layout.fonts)), job.options)
-        unusable = {part.tasks[0]: part.result for part in run(trial, layout.distinct(), pool) if part.result}
+        unusable = {part.tasks[0]: part.result for part in run(trial, glyphs, pool) if part.result}
         if not unusable:
             raise
         return pool.submit(drawings, replace(job, layout=replace(layout, unusable=unusable))).result()
@@ -133,7 +146,7 @@ def drawings(job: TextJob) -> Drawings:
     Raises:
         GlyphsplineError: it cannot be fitted, or a format cannot draw it.
     """
-    layout, options = job.layout, job.options
+    layout, options, fit_each = job.layout, job.options, partial(fitted, alone=job.alone)
     metrics = layout.fonts[0].metrics
     notes: dict[str, None] = {}
     outside = False
@@ -147,7 +160,7 @@ def drawings(job: TextJob) -> Drawings:
     @cache
     def whole(fit: bool) -> GlyphResult:
         if fit:
-            result = layout.convert(options, fitted)
+            result = layout.convert(options, fit_each)
         else:
             (found,) = unfitted([layout.outline()], options)
             if isinstance(found, GlyphsplineError):
@@ -159,7 +172,7 @@ def drawings(job: TextJob) -> Drawings:
     def each_glyph(fit: bool) -> bytes:
         from ...writers.svg.text_drawing import text_document
 
-        results = layout.results(options, fitted) if fit else layout.unfitted(options)
+        results = layout.results(options, fit_each) if fit else layout.unfitted(options)
         note(results)
         settings = sized(job, layout.placed(results)) if job.fit_width else job.settings
         return text_document(layout, results, settings.look)
