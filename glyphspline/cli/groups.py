@@ -38,7 +38,7 @@ class BareOptions(TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Add the values that are meant."""
         filled: list[str] = []
-        for arg, following in zip(args, [*args[1:], "-"], strict=True):
+        for arg, following in zip(args, [*args[1:], "-"], strict=False):
             filled += [arg, BARE[arg]] if arg in BARE and following.startswith("-") else [arg]
         return super().parse_args(ctx, filled)
 
