@@ -38,7 +38,7 @@ def rounded_font(path: Path, count: int, seed: int) -> Path:
         builder.setupGlyf(glyphs)
     else:
         builder.setupCFF("Rounded", {}, glyphs, {})
-    builder.setupHorizontalMetrics({name: (1000, 0) for name in names})
+    builder.setupHorizontalMetrics(dict.fromkeys(names, (1000, 0)))
     builder.setupHorizontalHeader(ascent=880, descent=-120)
     builder.setupNameTable({"familyName": "Rounded", "styleName": "Regular"})
     builder.setupOS2()

@@ -47,7 +47,7 @@ def test_points_of_quadratics_are_whole(tmp_path: Path) -> None:
 
 
 def test_turns_are_seen_where_they_are(tmp_path: Path) -> None:
-    """On the curve, where a contour is closed, and in contours without a point on the curve; implied ones are smooth."""
+    """On the curve, where a contour is closed, and in those without a point on the curve; implied ones are smooth."""
     pen = TTGlyphPen(None)
     pen.moveTo((0, 0))
     pen.lineTo((200, 0))

@@ -46,8 +46,8 @@ class Given(NamedTuple):
 
     Attributes:
         cubics: (K, m, 4, 2). line: (m,). joints: of it. slack: (m + 1,) the largest turn of each that is no new kink,
-            least: (m + 1,) its smallest turn in any mix. own: (m + 1,) the largest it has, reach: (2, m + 1) beside
-            handles that long, before and behind. level: (m + 1,) whether a curve there is to begin or end along a line.
+            least: (m + 1,) its smallest turn in any mix. own: (m + 1,) its largest turn, reach: (2, m + 1)
+            beside what lengths of handles, before and behind. level: (m + 1,) whether a curve there is to begin or end along a line.
         way: (2, K, m + 1, 2) what arrives at joints, and leaves them.
         cuts: (m + 1,) the joints at which runs end: corners, kinks, ends of lines. upright: (m + 1,) those at which it
             has a horizontal or vertical extremum, in all masters.
@@ -123,8 +123,8 @@ def read_contour(
                     way[side, w, j, 0], way[side, w, j, 1] = x, y
             set_unit(way[0, w, j], joints.arriving[w, j])
             set_unit(way[1, w, j], joints.leaving[w, j])
-    cuts[m], upright[m], slack[m], least[m], level[m], own[m] = cuts[0], upright[0], slack[0], least[0], level[0], own[0]
-    reach[:, m] = reach[:, 0]
+    cuts[m], slack[m], least[m], level[m] = cuts[0], slack[0], least[0], level[0]
+    upright[m], own[m], reach[:, m] = upright[0], own[0], reach[:, 0]
     joints.corner[m], way[:, :, m] = joints.corner[0], way[:, :, 0]
     joints.arriving[:, m], joints.leaving[:, m] = joints.arriving[:, 0], joints.leaving[:, 0]
     outline = mixed(corners, cubics)
