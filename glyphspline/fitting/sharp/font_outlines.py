@@ -47,7 +47,8 @@ class Given(NamedTuple):
     Attributes:
         cubics: (K, m, 4, 2). line: (m,). joints: of it. slack: (m + 1,) the largest turn of each that is no new kink,
             least: (m + 1,) its smallest turn in any mix. own: (m + 1,) its largest turn, reach: (2, m + 1)
-            beside what lengths of handles, before and behind. level: (m + 1,) whether a curve there is to begin or end along a line.
+            beside what lengths of handles, before and behind. level: (m + 1,) whether a curve there is to begin or end
+            along a line.
         way: (2, K, m + 1, 2) what arrives at joints, and leaves them.
         cuts: (m + 1,) the joints at which runs end: corners, kinks, ends of lines. upright: (m + 1,) those at which it
             has a horizontal or vertical extremum, in all masters.

@@ -169,8 +169,8 @@ def assembled(given: Given, ends: IntArray, tries: IntArray, tolerance: float, k
     room, R = MOST * (ends[S] - ends[0] + 2 * S) + MORE[-1] * S, 0
     made = Quads(
         np.empty((K, room, 2)), np.empty((K, room + 1, 2)), np.ones(room + 1, np.bool_), np.zeros((K, room + 1, 2)),
-        np.zeros((K, room + 1, 2)), np.full(room + 1, KINK), np.full(room + 1, KINK), np.zeros(room + 1), np.zeros(room + 1),
-        np.zeros((room, 2), np.bool_),
+        np.zeros((K, room + 1, 2)), np.full(room + 1, KINK), np.full(room + 1, KINK), np.zeros(room + 1),
+        np.zeros(room + 1), np.zeros((room, 2), np.bool_),
         np.zeros(room, np.bool_), np.zeros(room, np.bool_), np.empty(room, np.int64), np.empty(room + 1, np.int64),
     )  # fmt: skip
     q = borrowed(made)
