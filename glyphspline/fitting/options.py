@@ -102,7 +102,7 @@ class Options:
     continuity: Continuity = option(
         "c2",
         "Fit between corners one C2 spline (c2), or the fewest cubics whose tangents and curvatures meet, as fonts "
-        "store them (g2): the default where only fonts are written.",
+        "store them (g2), of quadratics with more points: the default where only fonts are written.",
         CORNERS,
     )  # fmt: skip
     effort: Effort = option("fast", "Find the fewest points, which takes longer (best), or few (fast).", CLOSENESS)
