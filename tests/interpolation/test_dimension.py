@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba import njit
 
 import glyphspline as gs
 from glyphspline.interpolation.api import interpolate_batch
@@ -25,9 +24,6 @@ OPTIONS: list[dict[str, Any]] = [
     {"finish": "solve"}, {"margin": 0.02, "fallback": "peak"}, {"knots": "centripetal"},
     {"closed": False, "finish": "solve", "variant": 3},
 ]  # fmt: skip
-
-
-reduced: Any = njit(lambda b, c: reduce(b, c))  # only compiled code may call it
 
 
 def polygon(n: int, d: int, seed: int = 0) -> FloatArray:
@@ -102,7 +98,7 @@ def test_the_reduction_keeps_inner_products(degree: int, size: int) -> None:
     b = np.random.default_rng(size).normal(size=(degree + 1, size))
     for given in (b, b * [[0.0], *[[1.0]] * degree], b[[0] * (degree + 1)], b * 1e-9 + b[:1]):
         c = np.full((degree + 1, degree + 1), np.nan)
-        reduced(given.copy(), c)
+        reduce(given.copy(), c)
         np.testing.assert_allclose(c.T @ c, given @ given.T, rtol=0, atol=1e-14 * (given**2).sum())
         y = 0.7 ** np.arange(degree + 1)
         np.testing.assert_allclose(np.linalg.norm(c @ y), np.linalg.norm(y @ given), atol=1e-14 * np.abs(given).sum())
@@ -114,7 +110,7 @@ def test_a_distance_of_almost_nothing_keeps_its_digits() -> None:
     b = rng.normal(size=(4, 30))
     b[0] = -(0.3 * b[1] + 0.09 * b[2] + 0.027 * b[3]) + 1e-12 * rng.normal(size=30)
     c = np.empty((4, 4))
-    reduced(b.copy(), c)
+    reduce(b.copy(), c)
     y, D, certified = search_piece(c, 3, 0.0, 0.0, 1.0, 0.0, 0.5, np.inf, 1e-28, np.empty(WORK))
     assert certified
     assert y == pytest.approx(0.3, abs=1e-11)
