@@ -233,8 +233,10 @@ def test_a_processor_without_fused_multiplication_computes_the_same(tmp_path: Pa
     """To rounding: LLVM then calls the C library's ``fma``, and vectors are shorter."""
     code = (
         "import numpy, glyphspline\n"
+        "from glyphspline.code_files import kept\n"
         "points = numpy.random.default_rng(1).random((40, 2))\n"
-        "print(repr(glyphspline.interpolate(points, residual_tolerance=1e-9).spline.control_points.tolist()))"
+        "with kept.compiling():\n"
+        "    print(repr(glyphspline.interpolate(points, residual_tolerance=1e-9).spline.control_points.tolist()))"
     )
     plain = run("-W", "error", "-c", code, NUMBA_CPU_NAME="generic", NUMBA_CACHE_DIR=str(tmp_path))
     assert plain.returncode == 0, plain.stderr

@@ -14,6 +14,7 @@ from concurrent.futures import FIRST_COMPLETED, wait
 from contextlib import suppress
 from functools import cache
 from hashlib import blake2b
+from importlib import import_module
 from math import inf
 from pathlib import Path
 
@@ -87,9 +88,9 @@ def compile_kind(kind: str) -> None:
 def prepare(kind: str) -> None:
     """Do the small runs of a kind of work, once in a process, with what reads outlines and all modules of a worker."""
     from ..readers.opentype.bulk import load_compiled
-    from . import worker  # noqa: F401
     from .small_runs import WORK
 
+    import_module(f"{__package__}.worker")  # by its name: the engine asks this file what is compiled
     load_compiled()
     WORK[kind]()
 

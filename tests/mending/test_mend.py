@@ -278,8 +278,10 @@ def test_a_bare_layer_is_called_glyphspline(tmp_path: Path) -> None:
         assert (tmp_path / "Bold.ufo" / "glyphs.glyphspline" / "a.glif").exists() or (
             tmp_path / "Regular.ufo" / "glyphs.glyphspline" / "a.glif"
         ).exists()
+    (new := tmp_path / "new").mkdir()
+    sources(new)  # without the layer, which has what was mended with another tolerance
     run = CliRunner().invoke(
-        app, ["convert", str(tmp_path / "Bold.ufo"), "--text", "a", "-o", str(tmp_path / "o"), "-j", "1", "--layer"]
+        app, ["convert", str(new / "Bold.ufo"), "--text", "a", "-o", str(tmp_path / "o"), "-j", "1", "--layer"]
     )
     assert run.exit_code == 0, run.output
     assert "layer glyphspline of Bold.ufo: new outlines of 0 glyphs, G2, as fonts store them" in run.output

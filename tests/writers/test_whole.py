@@ -35,7 +35,8 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("whole") / "out"
     source = open_font(FONTS / "kouzan-gyosho.otf")
     summary = convert_font(source, source.select(text=TEXT), folder, SPEC, jobs=0)
-    assert [remark.split(":")[0] for remark in summary.remarks] == [
+    assert "within" in next(remark for remark in summary.remarks if "as read back" in remark)
+    assert [remark.split(":")[0] for remark in summary.remarks if "as read back" not in remark] == [
         f"KouzanGyoshoSubset-spline.{name}" for name in ("ufo", "otf", "ttf", "parquet")
     ]
     return folder
