@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -30,7 +31,8 @@ def test_rounded_strokes_have_no_new_turn_as_ttf(kind: str, tmp_path: Path) -> N
     source, made = rounded_font(tmp_path / f"source.{kind}", 50, seed=50), tmp_path / "made.ttf"
     font = gs.open_font(source)
     names = [name for name in font.glyph_names if name != ".notdef"]
-    write_font(font, unfitted([*font.outlines(names)], OPTIONS), made, tolerance=1.0)
+    results: Any = unfitted([*font.outlines(names)], OPTIONS)
+    write_font(font, results, made, tolerance=1.0)
     before, after = (TTFont(path).getGlyphSet() for path in (source, made))
     seen = {name: turns(before, name) for name in names}
     assert sum(map(len, seen.values())) > 100, "the source turns by rounding"
