@@ -492,7 +492,7 @@ TABLE: tuple[tuple[str, Planter, str], ...] = (
     ("lines beyond their corner", beyond_corner, "crossing"),
     ("doubled contour", copied, "doubled"),
     ("overlap", overlap, "overlap"),
-    ("direction", direction, "direction"),
+    ("direction", direction, "direction covered"),
 )
 FAULTS = {name: (planter, frozenset(kinds.split())) for name, planter, kinds in TABLE}
 

@@ -1,4 +1,4 @@
-"""What the contours of a glyph enclose: overlaps, self-crossings, doubled strands, and wrong directions.
+"""What the contours of a glyph enclose: overlaps, self-crossings, doubled strands, wrong directions, what is covered.
 
 Contours *cross* where one changes to the other side of the other; to touch is no crossing. Strands are *doubled* where
 they lie on each other. Of a contour that runs to a tip and straight back, a spur, they may be apart by what rounding to
@@ -9,8 +9,9 @@ contours that abut, a copy of a contour. In a glyph of parts that overlap, edges
 What is filled on both sides of a contour, by the nonzero rule, changes only where it meets others or itself: it is
 looked at between all such places. An *outer* contour has white outside along most of what bounds ink. It runs in the
 *wrong direction* if it runs unlike most outer contours of its glyph: fonts draw them clockwise or counter-clockwise,
-and both are right. A contour that has ink on both sides all along is a patch, over a joint of others, and may run as it
-does; but inside a single contour, where a patch is of no use, it is a counter that runs like the contour around it.
+and both are right. A contour that has ink on both sides all along draws nothing and has no wrong direction. Over a joint
+of others it is a patch. Inside a single contour, where a patch is of no use, it is *covered*: a counter, say, that runs
+like the contour around it.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from ..curves.crossings import meetings
 from ..curves.cubics import jet, length, split
 from ..curves.integrals import area, integrals
 from ..types import BoolArray, FloatArray, IntArray
-from .kinds import CROSSING, DIRECTION, DOUBLED, OVERLAP, SPIKE, Limits
+from .kinds import COVERED, CROSSING, DIRECTION, DOUBLED, OVERLAP, SPIKE, Limits
 from .segments import ROUNDING, Segments, rows
 
 SHARP = np.radians(30.0)
@@ -48,10 +49,10 @@ BESIDE = 1e-3
 def enclosed_findings(
     cubics: FloatArray, segments: Segments, glyphs: IntArray, limits: Limits, unit: float, outer: int
 ) -> FloatArray:
-    """(n, 7) overlaps, self-crossings, doubled strands and wrong directions; see :mod:`.segments`.
+    """(n, 7) overlaps, self-crossings, doubled strands, wrong directions and what is covered; see :mod:`.segments`.
 
     Two contours that cross are reported once, of the first, where it first crosses; the value is the number of places.
-    The value of a wrong direction is the area enclosed. Of glyphs with thousands of strands on each other, for which
+    The value of the last two is the area enclosed. Of glyphs with thousands of strands on each other, for which
     :func:`..curves.crossings.meetings` gives up, only spurs and directions are reported.
 
     Args:
@@ -69,8 +70,8 @@ def enclosed_findings(
     doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)
     spurs = _spurs(cubics, segments, limits, min(ROUNDING, unit))
     known = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs[spurs[:, 0] == DOUBLED, 1])
-    directions = _wrong_directions(cubics, offsets, glyphs, met, unit, outer)
-    return np.concatenate([_crossed(crossed), doubled[~known], spurs, directions])
+    directed = _directed(cubics, offsets, glyphs, met, unit, outer)
+    return np.concatenate([_crossed(crossed), doubled[~known], spurs, directed])
 
 
 def _crossed(crossed: FloatArray) -> FloatArray:
@@ -154,10 +155,10 @@ def _spurs(cubics: FloatArray, segments: Segments, limits: Limits, apart: float)
     return rows(*np.array(found, dtype=np.float64).reshape(-1, 4).T)
 
 
-def _wrong_directions(
+def _directed(
     cubics: FloatArray, offsets: IntArray, glyphs: IntArray, met: FloatArray, unit: float, way: int
 ) -> FloatArray:
-    """Filled counters, and outer contours that run against ``way``, or, if it is 0, against most of the glyph's.
+    """Covered contours, and outer ones that run against ``way``, or, if it is 0, against most of the glyph's.
 
     Args:
         met: (K, 6) where contours meet, see :func:`..curves.crossings.meetings`.
@@ -180,9 +181,10 @@ def _wrong_directions(
     within[contours] = around
     # The others wind once, as this contour does; and nowhere another one of them.
     inside = (every - own == own.sum(axis=1)[:, None]).all(axis=1) & (around >= 0) & (around == within[contours])
-    filled = (np.bincount(contours, ~inside, count) == 0) & (areas != 0) & (within >= 0)
-    which = np.flatnonzero(filled | (runs * wanted[owners] < 0))
-    return rows(DIRECTION, which, 0.0, np.abs(areas[which]), other=np.where(filled[which], within[which], -1))
+    covered = (np.bincount(contours, ~inside, count) == 0) & (areas != 0) & (within >= 0)
+    which = np.flatnonzero(covered | (runs * wanted[owners] < 0))
+    what, other = np.where(covered, COVERED, DIRECTION), np.where(covered, within, -1)
+    return rows(what[which], which, 0.0, np.abs(areas[which]), other=other[which])
 
 
 def _between_meetings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -15,8 +15,8 @@ LEVELS: tuple[Level, ...] = ("INFO", "WARN")
 
 (
     KINK, JUMP, LUMP, INFLECTION, STRAIGHT, SLANTED, EXTREMUM, SHORT, HANDLES, OVERLAP, DIRECTION, DOUBLED, CROSSING,
-    REPEATED, LEFTOVER, SPIKE, RETRACTED, UNLEVEL, TURN,
-) = range(19)  # fmt: skip
+    REPEATED, LEFTOVER, SPIKE, RETRACTED, UNLEVEL, TURN, COVERED,
+) = range(20)  # fmt: skip
 """Numbers of the kinds in tables of findings: their places in ``KINDS``."""
 
 
@@ -56,6 +56,7 @@ KINDS = (
     Kind("retracted", "INFO", "units", "a handle of no length, of a curve of {value}"),
     Kind("unlevel", "INFO", "units", "handles at an extreme point {value} off level"),
     Kind("turn", "INFO", "°", "turns by {value}, of two lines or beside a short segment or handle"),
+    Kind("covered", "INFO", "units²", "draws nothing, with ink on both sides: runs like {other} around it"),
 )
 
 MENDED = ("kink", "jump", "handles", "extremum", "unlevel", "slanted", "repeated", "straight", "short", "direction")

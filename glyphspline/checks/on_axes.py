@@ -16,12 +16,12 @@ from ..outlines.outline import Contours
 from ..types import FloatArray, IntArray
 from .check import measured
 from .finding import Measured
-from .kinds import CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
+from .kinds import COVERED, CROSSING, DIRECTION, DOUBLED, JUMP, KINK, OVERLAP, TURN, Thresholds
 from .kinks import AxisKinks, along_from, kinks_along
 from .segments import arc, rounding_turns
 from .turns import joint_controls, turns_of
 
-OF_CONTOURS = (OVERLAP, DIRECTION, DOUBLED, CROSSING)
+OF_CONTOURS = (OVERLAP, DIRECTION, COVERED, DOUBLED, CROSSING)
 """Kinds that are reported once a contour."""
 
 OF_SMOOTH = (JUMP, TURN)
