@@ -9,7 +9,7 @@ contours that abut, a copy of a contour. In a glyph of parts that overlap, edges
 What is filled on both sides of a contour, by the nonzero rule, changes only where it meets others or itself: it is
 looked at between all such places. An *outer* contour has white outside along most of what bounds ink. It runs in the
 *wrong direction* if it runs unlike most outer contours of its glyph: fonts draw them clockwise or counter-clockwise,
-and both are right. A contour that has ink on both sides all along draws nothing and has no wrong direction. Over a joint
+and both are right. A contour with ink on both sides all along draws nothing and has no wrong direction. Over a joint
 of others it is a patch. Inside a single contour, where a patch is of no use, it is *covered*: a counter, say, that runs
 like the contour around it.
 """
