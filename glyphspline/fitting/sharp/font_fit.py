@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...checks.kinds import JUMP, KINDS, KINK, THRESHOLDS
+from ...checks.bends import bend_findings
+from ...checks.kinds import JUMP, KINDS, KINK, LUMP, THRESHOLDS
 from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
 from ...compiled import compiled
 from ...curves.nearest import near_places
@@ -261,28 +262,36 @@ def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
 
 
 def findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 7) what a check finds at joints and in segments, see :data:`...checks.segments.WHAT`; and as ``TURNING`` the
-    joints of curves that turn as kinks do, also those that a check takes for rounding's."""
-    segments, limits = Segments.of(all_cubics(contours), contours), THRESHOLDS.limits(em)
+    """(n, 7) what a check finds at joints, in segments and bends, see :data:`...checks.segments.WHAT`; and as ``TURNING``
+    the joints of curves that turn as kinks do, also those that a check takes for rounding's."""
+    cubics, limits = all_cubics(contours), THRESHOLDS.limits(em)
+    segments = Segments.of(cubics, contours)
     line = segments.degrees == 1
     sizes = np.abs(np.angle(segments.last[segments.before].conj() * segments.first))
     joints = np.flatnonzero((sizes > KINKED) & (sizes < CORNER) & ~(line & line[segments.before]))
     c = np.searchsorted(segments.offsets, joints, side="right") - 1
     turning = rows(TURNING, c, joints - segments.offsets[c], 0.0)
-    found = np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits), turning])
-    return found[found[:, WHAT] != JUMP]
+    lumps = rows(LUMP, *bend_findings(cubics, contours, limits.lump, limits.lump_height, limits.corner_angle).T)
+    return np.concatenate([joint_findings(segments, limits), segment_findings(segments, limits), lumps, turning])
 
 
 def _new_findings(
     source: ContourArrays, expected: FloatArray, curves: ContourArrays, places: Sequence[FloatArray], em: float
 ) -> BoolArray:
-    """(m,) the source's segments where curves have a finding of a kind that these segments have not."""
+    """(m,) the source's segments where curves have a finding of a kind that these segments have not.
+
+    Of curvature nothing is found in quadratics: it is looked at where the source has none.
+    """
     wrong = np.zeros(len(source.degrees), dtype=np.bool_)
+    quadratic = np.add.reduceat(source.degrees == 2, source.offsets[:-1]) > 0
     for row in findings(curves, em):
-        c, s = int(row[CONTOUR]), int(row[PLACE])
-        own, m, at_joint = places[c][:, 1], int(np.diff(source.offsets)[c]), row[WHAT] in (KINK, TURNING)
+        c, s, what = int(row[CONTOUR]), int(row[PLACE]), row[WHAT]
+        if quadratic[c] and what in (JUMP, LUMP):
+            continue
+        own, m = places[c][:, 1], int(np.diff(source.offsets)[c])
+        at_joint = what in (KINK, TURNING, JUMP) or (what == LUMP and row[PLACE] == s)
         low, high = own[s] - (own[-1] - own[-2] if s == 0 else own[s] - own[s - 1]) * at_joint, own[s + 1]
-        alike = expected[(expected[:, CONTOUR] == c) & (expected[:, WHAT] == row[WHAT]), PLACE]
+        alike = expected[(expected[:, CONTOUR] == c) & (expected[:, WHAT] == what), PLACE]
         first, last = (own[s], own[s]) if at_joint else (low, high)
         if ((alike - first + 0.5) % m <= last - first + 1.0).any():
             continue
