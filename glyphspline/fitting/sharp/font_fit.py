@@ -262,7 +262,7 @@ def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
 
 
 def findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 7) what a check finds at joints, in segments and bends, see :data:`...checks.segments.WHAT`; and as ``TURNING``
+    """(n, 7) what a check finds at joints, in segments and bends, see :data:`...checks.segments.WHAT`; as ``TURNING``
     the joints of curves that turn as kinks do, also those that a check takes for rounding's."""
     cubics, limits = all_cubics(contours), THRESHOLDS.limits(em)
     segments = Segments.of(cubics, contours)
