@@ -22,7 +22,7 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Outline
 from glyphspline.readers import AnySource, open_font, open_source
 from glyphspline.writers.font.font_file import FontSummary, share_subroutines, to_font, write_font
-from glyphspline.writers.font.font_glyphs import Flavour, char_string, fitting_tolerance, oriented
+from glyphspline.writers.font.font_glyphs import Flavour, char_string, cut_alone, distinct, fitting_tolerance, oriented
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
 from tests.readers.test_fonts import two_sided_distance
@@ -300,6 +300,22 @@ def test_a_glyph_of_a_cff_table_that_cannot_be_drawn_costs_only_itself(
         0,
         len(source.outline(source.glyph_names[4]).contours),
     ]
+
+
+def test_points_that_rounding_puts_together_are_stored_once() -> None:
+    small = polygon_contour([(0, 0), (40, 0), (40.2, 0.1), (40.4, 0.3), (40, 30), (0.3, 30), (0, 29.8), (0, 0.4)])
+    glyph = cut_alone([small, polygon_contour([(9.6, 9.6), (10.4, 9.6), (10, 10.4)])], 0.3, "dots")
+    assert [*glyph.coordinates] == [(0, 0), (40, 0), (40, 30), (0, 30), (10, 10)]
+    assert glyph.endPtsOfContours == [3, 4]
+
+
+@pytest.mark.parametrize(
+    ("on", "kept"),
+    [([1, 1, 1, 1], [0, 2, 3]), ([1, 0, 1, 1], [0, 2, 3]), ([0, 1, 1, 1], [1, 2, 3]), ([0, 0, 1, 1], [0, 1, 2, 3])],
+)
+def test_of_two_points_in_one_place_the_one_on_the_curve_stays(on: list[int], kept: list[int]) -> None:
+    points = np.array([[0, 0], [0, 0], [9, 0], [9, 9]])
+    assert distinct(points, np.array(on, dtype=np.bool_)).tolist() == kept
 
 
 def test_a_char_string_leaves_the_line_back_to_the_start_to_the_end_of_the_contour() -> None:

@@ -231,10 +231,28 @@ def cut_alone(contours: Sequence[Contour], step: float, name: str) -> Glyph:
     pen = Cu2QuPen(collected, step, all_quadratic=True)
     for contour in contours:
         contour.draw(pen)
-    # What is equal but for rounding errors rounds alike: a handle and its point at an extremum half a unit from whole.
-    collected.points = [(round(x, 6), round(y, 6)) for x, y in collected.points]
     check_size(collected.points, name)
-    return collected.glyph()
+    # What is equal but for rounding errors rounds alike: a handle and its point at an extremum half a unit from whole.
+    points = np.floor(np.round(np.array(collected.points, dtype=np.float64).reshape(-1, 2), 6) + 0.5).astype(np.int64)
+    on, parts = np.array(collected.types, dtype=np.bool_), np.split(np.arange(len(points)), np.add(collected.endPts, 1))
+    kept = [own for part in parts[:-1] if len(own := part[distinct(points[part], on[part])])]
+    which = np.concatenate([np.empty(0, dtype=np.int64), *kept])
+    return simple_glyph(points[which], on[which], (np.cumsum([len(own) for own in kept]) - 1).tolist(), False)
+
+
+def distinct(points: IntArray, on: BoolArray) -> IntArray:
+    """The points of a contour without those that rounding put on the one before or, off the curve, on a neighbour."""
+    which = np.arange(len(points))
+    while len(which) > 1:
+        same = (points[which] == points[np.roll(which, 1)]).all(axis=1)
+        own, before = on[which], on[np.roll(which, 1)]
+        gone = (same & before) | np.roll(same & own & ~before, -1)
+        if not gone.any():
+            break
+        if gone[0] and own[0]:  # a contour begins where it did
+            gone[0], gone[-1] = False, True
+        which = which[:1] if gone.all() else which[~gone]
+    return which
 
 
 def simple_glyph(points: IntArray, on: BoolArray, ends: list[int], overlap: bool) -> Glyph:
