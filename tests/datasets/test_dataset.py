@@ -100,7 +100,7 @@ gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")
-@pytest.mark.parametrize("finished", [1, 3])
+@pytest.mark.parametrize("finished", [1, pytest.param(3, marks=pytest.mark.long)])
 def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: int, tmp_path: Path) -> None:
     dataset(FONTS, tmp_path / "whole", PLAIN, jobs=0)
     out = tmp_path / "killed"

@@ -1,4 +1,4 @@
-"""Runs over hundreds of glyphs that are interrupted, and gone on with: the folder is the same to the byte."""
+"""Runs over many glyphs that are interrupted, and gone on with: the folder is the same to the byte."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.runs.test_hostile import built, square
 
 SPEC = RunSpec(Options(step=300.0), ("svg", "gallery", "parquet"))
 CHUNK = 40
-MANY = 16 * CHUNK + 5
+MANY = 4 * CHUNK + 5
 """Glyphs of which each of two workers gets whole chunks."""
 
 
