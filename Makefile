@@ -52,7 +52,7 @@ test-all: .venv/.test-all lint warm
 paper: warm
 	$(BIN)/python -m scripts.paper $(if $(ONLY),--only $(ONLY))
 
-# 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
+# 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; `make test-all` takes 500.
 # Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.
 check-reference: warm
 	$(BIN)/python -m scripts.adversarial_footpoints

@@ -19,10 +19,13 @@ from .agreement import TOLERANCE, compare
 from .polygons import KINDS, polygon, smooth, uniform
 
 
-@pytest.mark.parametrize("first", [0, *(pytest.param(k, marks=pytest.mark.long) for k in range(50, 500, 50))])
-def test_agrees_with_the_reference(first: int) -> None:
+MORE = [range(first, first + 79) for first in range(26, 500, 79)]
+
+
+@pytest.mark.parametrize("numbers", [range(26), *(pytest.param(part, marks=pytest.mark.long) for part in MORE)])
+def test_agrees_with_the_reference(numbers: range) -> None:
     """Kinds of polygons and settings take turns."""
-    for number in range(first, first + 50):
+    for number in numbers:
         kind, points = polygon(number)
         found = compare(points, number, most=12)
         assert found.iterations == 0, (kind, number)

@@ -228,7 +228,7 @@ def most_alternations(values: FloatArray, least: float) -> int:
     return most
 
 
-@given(st.lists(st.integers(0, 8), min_size=5, max_size=10))
+@given(st.lists(st.integers(0, 8), min_size=5, max_size=7))
 def test_agrees_with_the_longest_sequence_of_samples(radii: list[int]) -> None:
     cubics = blob(radii)
     found = most_alternations(curvatures(cubics, 12), TURN / shape(cubics).length)
