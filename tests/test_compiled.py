@@ -18,7 +18,6 @@ from glyphspline.interpolation.reference import footpoint, prepare
 from .agreement import TOLERANCE, compare
 from .polygons import KINDS, polygon, smooth, uniform
 
-
 MORE = [range(first, first + 79) for first in range(26, 500, 79)]
 
 
