@@ -28,7 +28,7 @@ from scripts.paper.steps import STEPS, reproduce
 from tests.places import ROOT
 
 OUTPUTS = ROOT / "outputs" / "paper"
-PROOFS = ["theorems", "lemmas", "fig1", "fig2", "fig3", "fig5"]
+PROOFS = ["theorems", "lemmas", "fig1", "fig2", "fig3", "fig5", "convergence"]
 
 
 @pytest.fixture(scope="module", params=[PROOFS, pytest.param([*STEPS], marks=pytest.mark.long)], ids=["proofs", "all"])
