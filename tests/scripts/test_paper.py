@@ -146,7 +146,7 @@ def test_a_second_run_says_the_same(quick: Path, tmp_path: Path) -> None:
     assert (tmp_path / "fig-1.png").exists()
 
 
-@pytest.mark.parametrize("degree", [3, 4, 5])
+@pytest.mark.parametrize("degree", [3, 4, pytest.param(5, marks=pytest.mark.long)])
 def test_no_random_knot_vector_beats_the_certified_least_peak(degree: int) -> None:
     rng = np.random.default_rng(degree)
     h = np.exp(rng.uniform(0, np.log(3), (20_000, degree + 1)))
