@@ -173,6 +173,7 @@ def rooms() -> dict[str, list[str]]:
     return {words[0]: words[1:] for words in map(str.split, TESTS.strip().splitlines())}
 
 
+@cache
 def faults_of(room: str) -> list[Fault]:
     """All faults that can be planted in a room."""
     place = ROOT / "glyphspline" / room
@@ -184,7 +185,7 @@ def faults_of(room: str) -> list[Fault]:
 def drawn(count: int, seed: int) -> list[tuple[str, Fault]]:
     """So many faults with their rooms, which take turns."""
     rng = random.Random(seed)
-    order = [room for room in rooms() if faults_of(room)]
+    order = [*rooms()]
     rng.shuffle(order)
     return [(room, rng.choice(faults_of(room))) for room in (order[k % len(order)] for k in range(count))]
 

@@ -36,7 +36,7 @@ def test_each_room_has_tests_and_faults_and_a_seed_draws_the_same() -> None:
     package = {path.stem for path in (ROOT / "glyphspline").iterdir() if path.suffix in ("", ".py")}
     assert rooms().keys() <= package
     assert all((ROOT / test).exists() for tests in rooms().values() for test in tests)
-    few = drawn(8, 1)
-    assert few == drawn(8, 1) != drawn(8, 2)
-    assert len({room for room, _ in few}) == 8
+    few = drawn(3, 1)
+    assert few == drawn(3, 1) != drawn(3, 2)
+    assert len({room for room, _ in few}) == 3
     assert all(fault in faults_of(room) for room, fault in few)
