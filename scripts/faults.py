@@ -158,8 +158,8 @@ class Text:
                 yield from self.operator(node.op, self.span(node)[0], self.span(node.operand)[0])
             case ast.Constant(value=int() | float() as value) if not isinstance(value, bool):
                 start, stop = self.span(node)
-                other = value + 1 if isinstance(value, int) else 2 * value or 1.0
-                yield self.fault(start, self.text[start:stop].decode(), repr(other))
+                changed = value + 1 if isinstance(value, int) else 2 * value or 1.0
+                yield self.fault(start, self.text[start:stop].decode(), repr(changed))
 
 
 def is_called_by_others_only(function: ast.FunctionDef) -> bool:
