@@ -5,7 +5,7 @@ BIN := .venv/bin
 unexport PYTHONDONTWRITEBYTECODE
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv warm demo test test-extras test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-starts bench paper clean
+.PHONY: venv warm demo test test-all test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-starts bench paper clean
 .NOTPARALLEL:
 
 # The package alone.
@@ -20,7 +20,7 @@ venv: .venv/.ready
 .venv/.%: pyproject.toml
 	test -x $(BIN)/pip || $(PYTHON) -m venv .venv
 	$(INSTALL) '.[$*]'
-	touch .venv/.ready $(if $(filter test test-extras browser,$*),.venv/.dev) $@
+	touch .venv/.ready $(if $(filter test test-all browser,$*),.venv/.dev) $@
 
 # Compiles what is not compiled yet. Without it everything runs as plain Python, tests in hours.
 warm: .venv/.ready
@@ -30,26 +30,29 @@ warm: .venv/.ready
 demo: .venv/.ready
 	$(BIN)/glyphspline demo --out outputs/demo
 
-# ruff, mypy, and the libraries whose types mypy reads; nothing is compiled.
+# ruff, mypy on the package, and the libraries whose types mypy reads; nothing is compiled.
 lint: .venv/.dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-# As many tests at a time as there are cores. Tests of libraries that only test-extras installs are skipped.
-test: .venv/.test lint warm
-	$(BIN)/python -m pytest -n auto --dist worksteal
+# Every truth, at the size that tells it: lint beside compiling, then as many tests at a time as there are cores.
+test: .venv/.test
+	$(MAKE) lint & lint=$$!; $(BIN)/glyphspline warm && wait $$lint
+	$(BIN)/python -m pytest -n auto --dist worksteal -m 'not long and not needs'
 
-# The tests that `test` skips: data-set libraries, an object store, a cluster, notebooks. A library that is absent fails them.
-test-extras: .venv/.test-extras warm
-	$(BIN)/python -m pytest -n auto --dist worksteal -m needs --require-libraries
+# All tests: those that repeat others at length, and those of data-set libraries, an object store, a cluster and notebooks,
+# which fail where a library is absent. Types of scripts and tests too.
+test-all: .venv/.test-all lint warm
+	$(BIN)/mypy glyphspline scripts tests
+	$(BIN)/python -m pytest -n auto --dist worksteal --require-libraries --hypothesis-profile long
 
 # The paper, claim by claim, into outputs/paper: up to 25 minutes on two cores (`--quick` for a look). `make paper ONLY=fig4`
 # makes that figure and its claims alone, into outputs/paper-fig4.
 paper: warm
 	$(BIN)/python -m scripts.paper $(if $(ONLY),--only $(ONLY))
 
-# 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; the tests take 500.
+# 5000 polygons through the compiled core and the plain reference, ten minutes or so of two free cores; `make test-all` takes 500.
 # Before them 4 million footpoints that are hard to find, against 60 digits: some three minutes.
 check-reference: warm
 	$(BIN)/python -m scripts.adversarial_footpoints

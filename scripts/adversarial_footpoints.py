@@ -28,6 +28,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from glyphspline.code_files import kept
 from glyphspline.compiled import compiled
 from glyphspline.interpolation.kernels.blocks import (
     BAD,
@@ -472,7 +473,9 @@ def attack(name: str, degree: int, cases: int, checks: int, seed: int) -> Found:
             now: Any = Lanes.draw(rng, ROUND) if name == "lanes" else Pieces.draw(rng, ROUND, degree)
         else:
             now = best.changed(rng, ROUND)
-        found, sizes = now.answers(), now.sizes()
+        with kept.compiling():
+            found = now.answers()
+        sizes = now.sizes()
         misses = found[:, 2] / sizes
         uncertified += int((found[:, 1] == 0).sum())
         sampled = max(sampled, float(misses.max()))

@@ -6,7 +6,7 @@ import re
 import tomllib
 from pathlib import Path
 
-TOOLS = ("bench", "browser", "dev", "docs", "test", "test-extras")
+TOOLS = ("bench", "browser", "dev", "docs", "test", "test-all")
 """Extras for the work on the package, which no user installs: any version does."""
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
@@ -18,10 +18,13 @@ from glyphspline.interpolation.reference import footpoint, prepare
 from .agreement import TOLERANCE, compare
 from .polygons import KINDS, polygon, smooth, uniform
 
+MORE = [range(first, first + 79) for first in range(26, 500, 79)]
 
-@pytest.mark.parametrize("batch", range(10))
-def test_agrees_with_the_reference(batch: int) -> None:
-    for number in range(batch, 500, 10):
+
+@pytest.mark.parametrize("numbers", [range(26), *(pytest.param(part, marks=pytest.mark.long) for part in MORE)])
+def test_agrees_with_the_reference(numbers: range) -> None:
+    """Kinds of polygons and settings take turns."""
+    for number in numbers:
         kind, points = polygon(number)
         found = compare(points, number, most=12)
         assert found.iterations == 0, (kind, number)
@@ -66,7 +69,6 @@ def test_start_vertex_direction_place_and_scale_do_not_matter(n: int) -> None:
     assert_allclose((moved - [3, -7]) / 1024, P, atol=1e-11)
 
 
-@settings(max_examples=150, deadline=None)
 @given(
     st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=14),
     st.sampled_from([0, 1, 2, 3, 4]),

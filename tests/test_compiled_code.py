@@ -72,6 +72,7 @@ def as_nobody(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     pytest.skip("there is no interpreter that another user can run")
 
 
+@pytest.mark.long
 @has_users
 def test_without_a_place_the_code_is_in_a_folder_of_ones_own(installed: Path) -> None:
     for _ in range(2):
@@ -103,6 +104,7 @@ def test_a_folder_that_others_can_change_is_not_used(
     assert second.stat().st_mode & 0o777 == 0o700
 
 
+@pytest.mark.long
 def test_a_place_that_is_given_is_taken(tmp_path: Path) -> None:
     for _ in range(2):
         found = run("-c", SMALL, NUMBA_CACHE_DIR=str(tmp_path / "there"))
@@ -147,7 +149,11 @@ def printed(package: Path, *lines: str) -> list[str]:
 
 @pytest.mark.parametrize(
     ("file", "before", "after", "result"),
-    [("inner.py", "2 *", "3 *", 35), ("constants.py", "5", "6", 26), ("outer.py", "+", "-", 15)],
+    [
+        ("inner.py", "2 *", "3 *", 35),
+        pytest.param("constants.py", "5", "6", 26, marks=pytest.mark.long),
+        pytest.param("outer.py", "+", "-", 15, marks=pytest.mark.long),
+    ],
 )
 def test_an_edit_anywhere_below_a_function_is_noticed(
     file: str, before: str, after: str, result: int, two_files: Path
@@ -218,7 +224,7 @@ def test_it_runs_as_plain_python_without_a_compiler(tmp_path: Path) -> None:
         np.testing.assert_allclose(slow, quick, rtol=0, atol=1e-9 * 100)  # of contours a hundred units wide
 
 
-@pytest.mark.parametrize("corners", ["smooth", "sharp"])
+@pytest.mark.parametrize("corners", [pytest.param("smooth", marks=pytest.mark.long), "sharp"])
 def test_the_command_runs_as_plain_python(corners: str, tmp_path: Path) -> None:
     """Reading and fitting two letters, with no code kept from before."""
     font, place = str(PACKAGE.parent / "fonts_test" / "edge-cases.ttf"), {"NUMBA_CACHE_DIR": str(tmp_path / "code")}
@@ -229,6 +235,7 @@ def test_the_command_runs_as_plain_python(corners: str, tmp_path: Path) -> None:
     assert not list(tmp_path.rglob("*.nbc"))
 
 
+@pytest.mark.long
 def test_a_processor_without_fused_multiplication_computes_the_same(tmp_path: Path) -> None:
     """To rounding: LLVM then calls the C library's ``fma``, and vectors are shorter."""
     code = (
@@ -248,6 +255,7 @@ def test_a_processor_without_fused_multiplication_computes_the_same(tmp_path: Pa
 CONVERT = ["-m", "glyphspline", "convert", str(PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"), "--text", "O"]
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="sends a signal")
 def test_ctrl_c_ends_a_compilation(tmp_path: Path) -> None:
     place = {"NUMBA_CACHE_DIR": str(tmp_path / "code")}
@@ -294,6 +302,7 @@ def test_warm_reaches_every_function() -> None:
     assert (found.returncode, found.stdout.split()) == (0, []), found.stderr
 
 
+@pytest.mark.long
 def test_the_command_warms_every_kind_of_work() -> None:
     found = run("-m", "glyphspline", "warm", "--jobs", "1")
     assert (found.returncode, found.stderr.splitlines()[-1]) == (0, "everything is compiled")

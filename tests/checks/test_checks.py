@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import glyphspline as gs
@@ -205,7 +205,6 @@ def places(found: list[Finding]) -> set[tuple[object, ...]]:
 FAULTY = [slice_of_round(0.75, 0.3, 0.6), *(contour for _, contour, _ in FAULTS.values())]
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.sampled_from(FAULTY), st.integers(0, 9))
 def test_start_and_direction_do_not_matter(contour: Contour, start: int) -> None:
     expected = places(gs.check(outline(contour)))
@@ -215,7 +214,6 @@ def test_start_and_direction_do_not_matter(contour: Contour, start: int) -> None
     assert places(gs.check(outline(contour.reversed()))) == expected
 
 
-@settings(max_examples=60, deadline=None)
 @given(st.sampled_from([*FAULTY, *SOUND.values()]))
 def test_the_em_does_not_matter(contour: Contour) -> None:
     """Shapes in fractions of a unit: what rounding may make depends on the unit, not on the em."""

@@ -116,7 +116,7 @@ def test_nothing_between_the_masters_turns_more(location: dict[str, float], tmp_
     count = 0
     for of_axis in report:
         axis = of_axis.axis
-        values = np.union1d(np.linspace(axis.minimum, axis.maximum, 801), axis.default)
+        values = np.union1d(np.linspace(axis.minimum, axis.maximum, 401), axis.default)
         for name in "abcdefgh":
             masters = gs.open_font(path).masters(name)
             found = [joins(masters.instance({**location, axis.tag: value}).contours[0]) for value in values.tolist()]

@@ -208,11 +208,19 @@ def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatc
     [
         (["convert", FONT, "--text", "好", "--jobs", "0", "--format", "svg", "--out", "good"], "1 glyph in"),
         (["text", FONT, "好", "--out", "good.svg"], ""),
-        (["check", FONT, "--text", "好"], "1 glyph: "),
-        (["diff", FONT, FONT, "--text", "好"], "1 glyph compared"),
-        (["atlas", FONT, "--text", "O好", "--profiles", "好", "--out", "good.pdf"], "2 pages"),
-        (["dataset", FONT, "--text", "好", "--no-fit", "--jobs", "0", "--out", "good"], "1 row of 1 glyph"),
-        (["demo", FONT, "--text", "好", "--jobs", "0", "--out", "good"], "1 glyph in"),
+        pytest.param(["check", FONT, "--text", "好"], "1 glyph: ", marks=pytest.mark.long),
+        pytest.param(["diff", FONT, FONT, "--text", "好"], "1 glyph compared", marks=pytest.mark.long),
+        pytest.param(
+            ["atlas", FONT, "--text", "O好", "--profiles", "好", "--out", "good.pdf"], "2 pages", marks=pytest.mark.long
+        ),
+        pytest.param(
+            ["dataset", FONT, "--text", "好", "--no-fit", "--jobs", "0", "--out", "good"],
+            "1 row of 1 glyph",
+            marks=pytest.mark.long,
+        ),
+        pytest.param(
+            ["demo", FONT, "--text", "好", "--jobs", "0", "--out", "good"], "1 glyph in", marks=pytest.mark.long
+        ),
     ],
 )
 def test_text_is_utf_8_whatever_the_locale(command: list[str], said: str, tmp_path: Path) -> None:

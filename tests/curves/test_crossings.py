@@ -19,10 +19,10 @@ from tests.places import GYOSHO as FONT
 from tests.polygons import overshoot
 
 
-def chains_at_random() -> list[FloatArray]:
+def chains_at_random(times: int) -> list[FloatArray]:
     rng = np.random.default_rng(11)
     found = []
-    for n in [2, 3, 4, 6, 9, 15] * 8:
+    for n in [2, 3, 4, 6, 9, 15] * times:
         joints, handles = rng.normal(0, 100, (n, 2)), rng.normal(0, 100 / n, (n, 2, 2))
         ends = np.roll(joints, -1, axis=0)
         found.append(np.stack([joints, joints + handles[:, 0], ends - handles[:, 1], ends], axis=1))
@@ -79,9 +79,10 @@ def farthest_from_hull(points: FloatArray, polygon: FloatArray) -> float:
     return float(np.where(inside, 0, np.hypot(*(away - along[..., None] * side).T).min(axis=0)).max())
 
 
-def test_crossings_are_those_of_many_chords() -> None:
+@pytest.mark.parametrize("times", [2, pytest.param(8, marks=pytest.mark.long)])
+def test_crossings_are_those_of_many_chords(times: int) -> None:
     counted = 0
-    for cubics in chains_at_random():
+    for cubics in chains_at_random(times):
         found, _ = crossings(cubics, np.array([0, len(cubics)]), np.array([0, 1]))
         counted += len(found)
         if len(found) != crossings_of_all_pairs(sampled(cubics, 100)):  # too coarse for some
@@ -89,7 +90,7 @@ def test_crossings_are_those_of_many_chords() -> None:
             assert len(found) - tiny.sum() == crossings_of_all_pairs(sampled(cubics, 600))
         for x, y in found[:, 2:]:
             np.testing.assert_allclose(at(cubics, x), at(cubics, y), atol=1e-5)
-    assert counted > 200
+    assert counted > 25 * times
 
 
 @pytest.mark.parametrize(
@@ -238,7 +239,7 @@ def test_strands_that_lie_on_each_other_by_thousands_end_in_time() -> None:
 def test_overshoot_is_that_of_every_chord() -> None:
     font = gs.open_font(FONT)
     outlines = [font.outline(name) for name in font.select(text="龍好g")]
-    for cubics in [*chains_at_random(), *(c.cubics() for o in outlines for c in o.contours)]:
+    for cubics in [*chains_at_random(2), *(c.cubics() for o in outlines for c in o.contours)]:
         points, _ = chords(cubics)
         polygon = np.ascontiguousarray(cubics[::2, 0])
         if len(polygon) >= 3:

@@ -76,17 +76,24 @@ def renamed(path: Path, source: str, **names: str) -> Path:
     return path
 
 
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The data set of all test fonts."""
+    out = tmp_path_factory.mktemp("whole") / "set"
+    dataset(FONTS, out, PLAIN, jobs=0)
+    return out
+
+
 # The same bytes
 
 
-def test_the_bytes_do_not_depend_on_the_number_of_workers(tmp_path: Path) -> None:
-    dataset(FONTS, tmp_path / "0", PLAIN, jobs=0)
+def test_the_bytes_do_not_depend_on_the_number_of_workers(whole: Path, tmp_path: Path) -> None:
     dataset([str(path) for path in sorted(FONTS.iterdir(), reverse=True) if path.suffix != ".md"],
                tmp_path / "2", PLAIN, jobs=2)  # fmt: skip
-    found = contents(tmp_path / "0")
-    assert found == contents(tmp_path / "2")
+    found = contents(tmp_path / "2")
+    assert found == contents(whole)
     assert sum(name.startswith("data/") for name in found) > 4
-    assert str(tmp_path).encode() not in (tmp_path / "0" / "dataset.json").read_bytes()
+    assert str(tmp_path).encode() not in (tmp_path / "2" / "dataset.json").read_bytes()
 
 
 MAKE = """
@@ -100,9 +107,8 @@ gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kills as POSIX does")
-@pytest.mark.parametrize("finished", [1, 3])
-def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: int, tmp_path: Path) -> None:
-    dataset(FONTS, tmp_path / "whole", PLAIN, jobs=0)
+@pytest.mark.parametrize("finished", [1, pytest.param(3, marks=pytest.mark.long)])
+def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: int, whole: Path, tmp_path: Path) -> None:
     out = tmp_path / "killed"
     run = subprocess.Popen([sys.executable, "-c", MAKE, str(FONTS), str(out)])
     try:
@@ -115,22 +121,33 @@ def test_a_run_that_was_killed_goes_on_and_ends_with_the_same_bytes(finished: in
         os.kill(run.pid, signal.SIGKILL)
         run.wait()
     before = {path: path.stat().st_mtime_ns for path in out.glob("data/*.parquet")}
-    assert finished <= len(before) < len(list((tmp_path / "whole" / "data").iterdir()))
+    assert finished <= len(before) < len(list((whole / "data").iterdir()))
     assert not (out / "README.md").exists()
     dataset(FONTS, out, PLAIN, jobs=0)
     assert {path: path.stat().st_mtime_ns for path in before} == before  # none was made again
-    assert contents(out) == contents(tmp_path / "whole")
+    assert contents(out) == contents(whole)
 
 
 class StoppedError(Exception):
     pass
 
 
+SOME, ONE = replace(PLAIN, characters="龍好愛國書法永之あいうのをABgO"), replace(SMALL, shard=1000)
+
+
+@pytest.fixture(scope="module")
+def one_shard(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data set of a shard a split."""
+    out = tmp_path_factory.mktemp("one") / "set"
+    dataset(FONTS, out, SOME, jobs=0, sizes=ONE)
+    return out
+
+
 @pytest.mark.parametrize("damage", ["", "cut", "changed", "link"])
 def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
-    damage: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    damage: str, one_shard: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    spec, counts = replace(PLAIN, characters="龍好愛國書法永之あいうのをABgO"), list[int]()
+    counts = list[int]()
     together = RowsJob.together
 
     def counted(self: RowsJob, tasks: Any, contents: Any) -> Made:
@@ -142,12 +159,9 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
             raise StoppedError
 
     monkeypatch.setattr(RowsJob, "together", counted)
-    one = replace(SMALL, shard=1000)
-    dataset(FONTS, tmp_path / "whole", spec, jobs=0, sizes=one)
-    whole, out = sum(counts), tmp_path / "stopped"
-    counts.clear()
+    glyphs, out = len(rows_of(one_shard)), tmp_path / "stopped"
     with pytest.raises(StoppedError):
-        dataset(FONTS, out, spec, jobs=0, observer=until, sizes=one)
+        dataset(FONTS, out, SOME, jobs=0, observer=until, sizes=ONE)
     kept, made = out / ".unfinished", sum(counts)
     last = max(kept.iterdir(), key=lambda file: int(file.name))
     assert not list(out.glob("data/*.parquet"))
@@ -161,10 +175,10 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
             data[:-1] if damage == "cut" else data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
         )
     counts.clear()
-    dataset(FONTS, out, spec, jobs=0, sizes=one)
-    again = sum(counts) - (whole - made)
+    dataset(FONTS, out, SOME, jobs=0, sizes=ONE)
+    again = sum(counts) - (glyphs - made)
     assert again == made if damage == "link" else (0 < again <= 10) == bool(damage)
-    assert contents(out) == contents(tmp_path / "whole")
+    assert contents(out) == contents(one_shard)
 
 
 @pytest.mark.parametrize("rows", ["glyph", "contour"])
@@ -179,16 +193,15 @@ def test_glyphs_that_miss_the_tolerance_are_counted(rows: Any, options: gs.Optio
         assert (summary.glyphs, summary.outside_tolerance) == (2, count)
 
 
-def test_shards_that_are_gone_or_broken_are_made_again(tmp_path: Path) -> None:
-    dataset(FONTS, tmp_path, PLAIN, jobs=0)
-    before = contents(tmp_path)
-    files = sorted((tmp_path / "data").iterdir())
+def test_shards_that_are_gone_or_broken_are_made_again(whole: Path, tmp_path: Path) -> None:
+    out = shutil.copytree(whole, tmp_path / "set")
+    files = sorted((out / "data").iterdir())
     files[0].unlink()
     files[2].write_bytes(files[2].read_bytes()[:-100])
     shutil.copy(files[3], files[1])  # of the same run, but not this shard
-    (tmp_path / "fonts.parquet").unlink()
-    dataset(FONTS, tmp_path, PLAIN, jobs=0)
-    assert contents(tmp_path) == before
+    (out / "fonts.parquet").unlink()
+    dataset(FONTS, out, PLAIN, jobs=0)
+    assert contents(out) == contents(whole)
 
 
 def test_a_folder_with_something_else_is_left_alone(tmp_path: Path) -> None:
@@ -539,9 +552,8 @@ def test_arrow_opens_it(letters: Path) -> None:
     assert not any(pa.types.is_dictionary(field.type) for field in schema)  # datasets does not open these
 
 
-def test_row_groups_are_bounded(tmp_path: Path) -> None:
-    dataset(FONTS, tmp_path, PLAIN, jobs=0)
-    for path in (tmp_path / "data").iterdir():
+def test_row_groups_are_bounded(whole: Path) -> None:
+    for path in (whole / "data").iterdir():
         file = pq.ParquetFile(path).metadata
         sizes = [file.row_group(k).num_rows for k in range(file.num_row_groups)]
         assert all(size == 10 for size in sizes[:-1])

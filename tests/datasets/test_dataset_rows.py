@@ -12,7 +12,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from fontTools.fontBuilder import FontBuilder
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import glyphspline as gs
@@ -127,7 +127,6 @@ def contours(draw: st.DrawFn) -> gs.Contour:
     return gs.Contour(50.0 * np.array(points, dtype=float), np.array(degrees))
 
 
-@settings(max_examples=300, deadline=None)
 @given(contours(), st.integers(0, 2**32))
 @example(gs.Contour(np.array([[50.0, 0], [0, 0], [50, 0], [100, 0]]), np.array([1, 3])), 1)  # told by degrees alone
 def test_a_contour_of_any_shape_has_one_row(contour: gs.Contour, seed: int) -> None:
@@ -174,7 +173,6 @@ FINE = 5000
 """Chords a segment: too short by less than 1e-6 of it."""
 
 
-@settings(max_examples=60, deadline=None)
 @given(contours())
 def test_points_are_at_equal_arc_lengths(contour: gs.Contour) -> None:
     """Against short chords, cusps too."""

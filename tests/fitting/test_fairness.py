@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import glyphspline as gs
@@ -186,7 +186,6 @@ def blob(numbers: list[int]) -> FloatArray:
 numbers = st.lists(st.integers(0, 12), min_size=5, max_size=24)
 
 
-@settings(max_examples=200, deadline=None)
 @example([1, 8, 0, 8, 1, 12], 0, 0.0, 0.0, False)  # a spike whose end is nearly an extremum
 @given(numbers, st.integers(0, 23), st.floats(-3, 3), st.floats(0, 6.3), st.booleans())
 def test_start_direction_side_angle_place_scale_and_cuts_do_not_matter(
@@ -229,11 +228,10 @@ def most_alternations(values: FloatArray, least: float) -> int:
     return most
 
 
-@settings(max_examples=25, deadline=None)
-@given(st.lists(st.integers(0, 8), min_size=5, max_size=10))
+@given(st.lists(st.integers(0, 8), min_size=5, max_size=7))
 def test_agrees_with_the_longest_sequence_of_samples(radii: list[int]) -> None:
     cubics = blob(radii)
-    found = most_alternations(curvatures(cubics, 24), TURN / shape(cubics).length)
+    found = most_alternations(curvatures(cubics, 12), TURN / shape(cubics).length)
     assert abs(extrema(cubics) - found) <= 2  # samples may miss a peak
     assert extrema(cubics) >= found
 

@@ -54,9 +54,10 @@ def test_a_contour_that_becomes_a_line_is_in_the_measures(effort: Any) -> None:
     assert unflagged(*defects(gs.to_svg(result), TEARDROP), [c.measures for c in result.contours]) == []
 
 
-def test_new_crossings_of_contours_thinner_than_the_tolerance_and_of_tangles_are_in_the_measures() -> None:
+@pytest.mark.parametrize("numbers", [(0, 1, 3, 5, 9, 17, 266), pytest.param(range(20), marks=pytest.mark.long)])
+def test_new_crossings_of_contours_thinner_than_the_tolerance_and_of_tangles_are_in_the_measures(numbers: Any) -> None:
     """A short form of ``make check-topology``, with contours that went wrong once."""
-    found = [glyph for number in (*range(20), 266) for glyph in hard(number)]
+    found = [glyph for number in numbers for glyph in hard(number)]
     assert [(glyph.character, glyph.way, glyph.silent) for glyph in found if glyph.silent] == []
-    assert sum(any(glyph.wrong) for glyph in found) > 3
+    assert sum(any(glyph.wrong) for glyph in found) > 1
     assert {glyph.face for glyph in found} == {"tangle", "ring", "loop", "hair", "back", "lens"}

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -19,7 +20,7 @@ from tests.places import ROOT
 from .mutants import mutant, sources
 
 
-@settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(derandomize=True, suppress_health_check=list(HealthCheck))
 @given(seed=st.integers(0, 2**32))
 def test_a_damaged_font_raises_nothing_but_our_own_errors(seed: int, tmp_path_factory: object) -> None:
     rng = random.Random(seed)
@@ -55,8 +56,9 @@ def look_at_glyphs(font: Source, options: Options) -> None:
     assert [to_svg(item) if isinstance(item, GlyphResult) else item.glyph for item in found] == batch
 
 
-def test_damaged_sources_through_commands_with_limits_and_what_was_found_once(tmp_path: Path) -> None:
-    call = [sys.executable, "-m", "tests.fuzz", "--commands", "30", "--seed", "1", "--out", str(tmp_path)]
+@pytest.mark.parametrize("commands", [0, pytest.param(30, marks=pytest.mark.long)])
+def test_damaged_sources_through_commands_with_limits_and_what_was_found_once(commands: int, tmp_path: Path) -> None:
+    call = [sys.executable, "-m", "tests.fuzz", "--commands", str(commands), "--seed", "1", "--out", str(tmp_path)]
     done = subprocess.run(call, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr[-2000:]
     assert done.stdout.endswith(" 0 kinds of faults\n")

@@ -365,5 +365,5 @@ def test_random_polygons_converge_as_the_paper_reports(n: int) -> None:
 
 
 def test_variant_0_seldom_converges_on_many_vertices() -> None:
-    runs = gs.interpolate_many([random_polygon(40, seed) for seed in range(10)], 0, max_iterations=100)
-    assert sum(r.converged for r in runs) <= 3
+    runs = gs.interpolate_many([random_polygon(40, seed) for seed in range(4)], 0, max_iterations=60)
+    assert sum(r.converged for r in runs) <= 1

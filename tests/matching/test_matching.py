@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import glyphspline as gs
@@ -288,7 +288,6 @@ def test_a_glyph_that_a_font_lacks_is_named() -> None:
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=25, deadline=None)
 def test_a_contour_matches_itself_by_other_points(seed: int) -> None:
     """Whatever joints are inserted, a contour is cut like itself, and the curve stays.
 

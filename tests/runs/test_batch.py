@@ -356,7 +356,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.parametrize("moment", [1, 3])
+@pytest.mark.parametrize("moment", [1, pytest.param(3, marks=pytest.mark.long)])
 def test_a_killed_run_goes_on_and_ends_the_same(moment: int, finished: Path, font: Font, tmp_path: Path) -> None:
     script, out = tmp_path / "run.py", tmp_path / "out"
     script.write_text(KILL_ME)

@@ -1,4 +1,4 @@
-"""Runs over hundreds of glyphs that are interrupted, and gone on with: the folder is the same to the byte."""
+"""Runs over many glyphs that are interrupted, and gone on with: the folder is the same to the byte."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from glyphspline.errors import OutputError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
+from glyphspline.runs.engine import Job
 from glyphspline.runs.folder import JOURNAL
 from glyphspline.runs.jobs.convert import convert_font, write_gallery
 from glyphspline.runs.spec import RunSpec
@@ -17,9 +18,14 @@ from tests.runs.test_batch import content
 from tests.runs.test_hostile import built, square
 
 SPEC = RunSpec(Options(step=300.0), ("svg", "gallery", "parquet"))
-CHUNK = 40
+CHUNK = 10
 MANY = 16 * CHUNK + 5
 """Glyphs of which each of two workers gets whole chunks."""
+
+
+@pytest.fixture(autouse=True)
+def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Job, "chunk", CHUNK)
 
 
 @pytest.fixture(scope="module")

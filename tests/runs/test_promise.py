@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from glyphspline import GlyphsplineError, open_source
 from tests import worst_fonts
 from tests.measured import measured
 
@@ -28,6 +29,8 @@ FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "segments.ttf": (worst_fonts.many_segments, "more code points than there are"),
 }
 """Files that are refused as a whole, and what is said of them."""
+
+long = pytest.mark.long
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +59,9 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("font", "command", "status", "named"), CASES)
+@pytest.mark.parametrize(
+    ("font", "command", "status", "named"), [*CASES[:2], *(pytest.param(*case, marks=long) for case in CASES[2:])]
+)
 def test_the_worst_glyphs_fail_alone_within_what_is_promised(
     font: str, command: str, status: int, named: list[str], folder: Path, tmp_path: Path
 ) -> None:
@@ -70,6 +75,14 @@ def test_the_worst_glyphs_fail_alone_within_what_is_promised(
 
 
 @pytest.mark.parametrize("name", FILES)
+def test_files_that_ask_for_too_much_are_refused(name: str, tmp_path: Path) -> None:
+    build, said = FILES[name]
+    build(tmp_path / name)
+    with pytest.raises(GlyphsplineError, match=said):
+        open_source(tmp_path / name).select(all_glyphs=True)
+
+
+@pytest.mark.parametrize("name", ["honest.woff2", *(pytest.param(name, marks=long) for name in [*FILES][1:])])
 def test_files_that_ask_for_too_much_are_refused_at_once(name: str, tmp_path: Path) -> None:
     build, said = FILES[name]
     build(tmp_path / name)
@@ -81,6 +94,7 @@ def test_files_that_ask_for_too_much_are_refused_at_once(name: str, tmp_path: Pa
     assert found.peak < BYTES
 
 
+@long
 def test_a_font_of_all_code_points_is_converted(tmp_path: Path) -> None:
     worst_fonts.all_characters(tmp_path / "all.ttf")
     found = measured("convert", tmp_path / "all.ttf", "--all", "--jobs", "1", "--out", "out", cwd=tmp_path)

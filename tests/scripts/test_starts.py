@@ -10,6 +10,7 @@ import pytest
 from tests.places import ROOT
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are found in /proc")
 def test_starts_end_with_all_files() -> None:
     """A short form of ``make check-starts``."""

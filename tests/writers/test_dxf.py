@@ -13,7 +13,7 @@ from typing import Any, get_args
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
@@ -306,7 +306,6 @@ def test_the_option_of_the_process_is_restored(results: dict[str, gs.GlyphResult
     assert not before
 
 
-@settings(max_examples=40, deadline=None)
 @given(st.text(max_size=30), st.sampled_from(get_args(DxfKind)))
 def test_no_name_is_in_the_file(name: str, kind: DxfKind) -> None:
     square = gs.Contour(np.array([(0, 0), (100, 0), (100, 100), (0, 100.0)]), np.ones(4, dtype=np.int64))

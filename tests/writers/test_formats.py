@@ -169,7 +169,7 @@ def convert(environment: dict[str, str], out: Path, *arguments: str) -> subproce
     return subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
 
 
-@pytest.mark.parametrize("jobs", ["0", "2"])
+@pytest.mark.parametrize("jobs", [pytest.param("0", marks=pytest.mark.long), "2"])
 def test_an_installed_plug_in_writes_files(plug_in: dict[str, str], tmp_path: Path, jobs: str) -> None:
     call = ["--text", "龍O", "--step", "60", "--size", "2cm", "--format", "svg,count", "--jobs", jobs]
     done = convert(plug_in, tmp_path, *call)

@@ -43,6 +43,15 @@ FAR = 7.0
 
 
 @pytest.mark.parametrize("kind", ["ttf", "otf"])
+@pytest.mark.parametrize("name", ["kouzan-gyosho.ttf", "kouzan-gyosho.otf"])
+def test_glyphs_are_within_their_bounds(name: str, kind: str, tmp_path: Path) -> None:
+    found, _ = written(FONTS / name, kind, tmp_path, 0)
+    assert len(found) >= 15
+    assert [glyph for glyph in found if glyph.bound is None or glyph.seen is not None] == []
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("kind", ["ttf", "otf"])
 @pytest.mark.parametrize("face", FACES, ids=lambda face: face.name)
 def test_glyphs_of_a_face_are_within_their_bounds(face: Any, kind: str, tmp_path: Path) -> None:
     paths = faces(face.file)
