@@ -86,7 +86,7 @@ def traps(source: str) -> list[str]:
         f"{node.lineno}: {why}"
         for function in functions(ast.parse(source))
         for node in ast.walk(function)
-        if (why := trap(node, complexes_of(function)))
+        if isinstance(node, ast.expr | ast.stmt) and (why := trap(node, complexes_of(function)))
     ]
 
 
