@@ -16,24 +16,28 @@ def compiled_code() -> None:
     warm(None, KINDS)
 
 
-@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("way", ["sharp", "smooth"])
 def test_glyphs_are_the_same(way: str) -> None:
     assert compared(FONTS / "kouzan-gyosho.ttf", ["--text", "A", *WAYS[way]]) == []
 
 
-@pytest.mark.parametrize("way", ["sharp", "smooth"])
+@pytest.mark.parametrize("way", ["sharp", "count"])
 def test_glyphs_that_no_designer_draws_are_the_same(way: str, tmp_path: Path) -> None:
     assert compared(odd_glyphs(tmp_path / "odd.ufo"), ["--all", *WAYS[way]]) == []
 
 
 def test_a_run_begun_plain_and_resumed_compiled_ends_with_the_same_bytes(tmp_path: Path) -> None:
-    font = odd_glyphs(tmp_path / "odd.ufo")
-    convert(font, tmp_path / "both", ["--glyphs", "back,crossed.round"], True)
+    font, words = odd_glyphs(tmp_path / "odd.ufo"), ["--glyphs", "back,crossed.round,thin,twice.round"]
+    convert(font, tmp_path / "both", words, True)
     begun = {path: path.stat().st_mtime_ns for path in (tmp_path / "both" / "svg").iterdir()}
-    convert(font, tmp_path / "both", ["--glyphs", "back,crossed.round,thin,twice.round"], False)
-    convert(font, tmp_path / "compiled", ["--glyphs", "back,crossed.round,thin,twice.round"], False)
+    for path in [path for path in begun if path.stem in ("thin", "twice.round")]:  # as if it had not come to them
+        path.unlink()
+        del begun[path]
+    convert(font, tmp_path / "both", words, False)
+    convert(font, tmp_path / "compiled", words, False)
     assert len(begun) == 2
     assert {path: path.stat().st_mtime_ns for path in begun} == begun, "what was there is kept"
+    assert (tmp_path / "both" / "svg" / "thin.svg").exists()
     assert differences(tmp_path / "both", tmp_path / "compiled") == []
 
 
