@@ -5,7 +5,7 @@ BIN := .venv/bin
 unexport PYTHONDONTWRITEBYTECODE
 INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check --no-compile --editable
 
-.PHONY: venv warm demo test test-all test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-starts bench paper clean
+.PHONY: venv warm demo test test-all test-browser test-package wheel docs lint fuzz check-reference check-topology check-bounds check-bytes check-starts bench paper clean
 .NOTPARALLEL:
 
 # The package alone.
@@ -67,6 +67,10 @@ check-topology: warm
 # half an hour or so of two free cores.
 check-bounds: .venv/.test warm
 	$(BIN)/python -m scripts.bounds
+
+# Whether plain Python writes the bytes of compiled code: glyphs of six installed faces and ones that no designer draws.
+check-bytes: .venv/.test warm
+	$(BIN)/python -m scripts.same_bytes
 
 # 2000 starts of a command, 500 of them under load, and in 100 more a process is killed: an hour of two free cores.
 check-starts: .venv/.ready

@@ -16,7 +16,7 @@ def main() -> None:
     extras = project["optional-dependencies"]
     of_extras = [entry for name in extras if name not in TOOLS for entry in extras[name]]
     for entry in [*project["dependencies"], *of_extras]:
-        if found := re.fullmatch(r"([\w-]+)>=([\d.]+)", entry):
+        if found := re.fullmatch(r"([\w-]+)>=([\d.]+)(?:,<[\d.]+)?", entry):
             print(f"{found[1]}=={found[2]}")
 
 

@@ -107,7 +107,8 @@ def lumps_of(
             (x0, y0, _, _, _, _), (x1, y1, _, _, _, _) = jet(cubics, s, at[i] - s), jet(cubics, r, at[j] - r)
             # A wave of curvature moves the curve to each side by its height times the square of its length, divided by
             # this.
-            height = (sizes[k] - beside) * ((x1 - x0) ** 2 + (y1 - y0) ** 2) / (8 * np.pi**2)
+            x, y = x1 - x0, y1 - y0
+            height = (sizes[k] - beside) * (x * x + y * y) / (8 * np.pi * np.pi)
             if height >= least_height:
                 peaks[size, 0], peaks[size, 1], peaks[size, 2] = at[k], sizes[k] / max(beside, least) - 1, height
                 size += 1

@@ -266,12 +266,13 @@ def rounding_turn(before: float, behind: float) -> float:
     both handles.
     """
     first, second = 1 / before, 1 / behind
-    return DEVIATION * np.sqrt(first * first + second * second + (first + second) ** 2)
+    both = first + second
+    return DEVIATION * np.sqrt(first * first + second * second + both * both)
 
 
 def rounding_turns(before: FloatArray, behind: FloatArray) -> FloatArray:
     """(n,) standard deviations of the turns of joints, see :func:`rounding_turn`."""
-    return np.array([rounding_turn(a, b) for a, b in zip(before.tolist(), behind.tolist(), strict=True)])
+    return np.array([rounding_turn(a, b) for a, b in zip(before, behind, strict=True)])
 
 
 @compiled
@@ -283,9 +284,10 @@ def rounding_variance(a: complex, b: complex, c: complex) -> float:
     own = b - a
     d = length(own)
     along = (own.conjugate() * (c - a)).real / (d * d)
-    ends = 1.0 if own.real == 0 or own.imag == 0 else along * along + (1 - along) ** 2
-    height = (2 / 3) ** 2 * (1 + ends) / d**4
-    return DEVIATION**2 * (height + 8 * (end_curvature(a, b, c) / d) ** 2)
+    ends = 1.0 if own.real == 0 or own.imag == 0 else along * along + (1 - along) * (1 - along)
+    height = 4 / 9 * (1 + ends) / (d * d * d * d)
+    turn = end_curvature(a, b, c) / d
+    return DEVIATION * DEVIATION * (height + 8 * turn * turn)
 
 
 @inlined
@@ -317,7 +319,8 @@ def is_whole(a: complex) -> bool:
 def end_curvature(a: complex, b: complex, c: complex) -> float:
     """Curvature of a cubic at the first of its first three points; not finite where the handle has no length."""
     own = b - a
-    return 2 / 3 * (own.conjugate() * (c - a)).imag / length(own) ** 3
+    d = length(own)
+    return 2 / 3 * (own.conjugate() * (c - a)).imag / (d * d * d)
 
 
 @compiled
@@ -336,7 +339,8 @@ def quadratic_roots(a: float, b: float, c: float) -> tuple[float, float]:
 @compiled
 def off_line(segments: Segments, j: int, chord: complex, limits: Limits) -> float:
     """How far a segment leaves its chord; infinite if a line in its place kinks where it joins smoothly."""
-    cubic, way = segments.points[j], chord / length(chord)
+    cubic, d = segments.points[j], length(chord)
+    way = complex(chord.real / d, chord.imag / d)  # NumPy divides complex numbers otherwise than compiled code does
     first, second = (way.conjugate() * (cubic[1] - cubic[0])).imag, (way.conjugate() * (cubic[2] - cubic[0])).imag
     most = 0.0
     for t in quadratic_roots(3 * (first - second), 2 * second - 4 * first, first):

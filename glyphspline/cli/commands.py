@@ -23,7 +23,7 @@ from ..writers.settings import BOTH, Maps
 from . import arguments as opt
 from .check_command import check
 from .diff_command import diff
-from .groups import BareOptions, grouped, only, place, without
+from .groups import BareOptions, Command, Commands, grouped, only, place, without
 from .mend_command import mend
 from .messages import RULE, UNDONE, print_json, printable, progress, say, stop, watch_interruption
 from .running import Conversion, check_masters, chosen, convert_fonts, convert_masters, opened, run_face, workplace
@@ -37,10 +37,12 @@ BRUSHED = "龍好"
 """Characters of the demonstration in brush faces."""
 
 app = typer.Typer(
+    cls=Commands,
     no_args_is_help=True,
     epilog=RULE,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120},
 )
 
 
@@ -95,7 +97,7 @@ def place_or_url(text: Any) -> str:
     return str(text)
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def dataset(
     fonts: opt.FontFiles,
@@ -132,10 +134,10 @@ def dataset(
     return bool(summary.failed or summary.outside_tolerance or summary.fonts["failed"])
 
 
-app.command()(text)
+app.command(cls=Command)(text)
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def info(
     font: opt.FontFile,
@@ -164,7 +166,7 @@ def info(
         typer.echo(printable("\n".join(font_lines(facts))))
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def report(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="Folder that a run has written.", show_default=False)],
@@ -179,7 +181,7 @@ def report(
     typer.echo(folder / "index.html")
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def atlas(
     font: opt.FontFile,
@@ -232,12 +234,12 @@ def atlas(
     return bool(made.failed or made.outside or names.missing)
 
 
-app.command()(check)
-app.command()(diff)
+app.command(cls=Command)(check)
+app.command(cls=Command)(diff)
 app.command(cls=BareOptions)(mend)
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def view(
     font: opt.FontFile,
@@ -255,7 +257,7 @@ def view(
     serve(font, face, port=port, browser=browser, announce=lambda address: say(f"{address} (Ctrl-C ends it)"))
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def demo(
     subset: Annotated[opt.Subset, only("text")],
@@ -298,7 +300,7 @@ def demo(
     return undone
 
 
-@app.command()
+@app.command(cls=Command)
 @grouped
 def warm(run: Annotated[opt.RunOptions, only("jobs", "quiet")]) -> None:
     """Compile everything now, so that no other command has to: for checkouts and containers."""

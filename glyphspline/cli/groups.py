@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any, TypeAlias, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of, text_of
@@ -32,7 +32,31 @@ BARE = {"--layer": "glyphspline"}
 """Options that may stand without a value, at the end or before another option, and the value that is meant then."""
 
 
-class BareOptions(TyperCommand):
+class Command(TyperCommand):
+    """A command whose help lists options by group, without the libraries that would draw boxes around them."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write a section for each group."""
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for parameter in self.get_params(ctx):
+            if record := parameter.get_help_record(ctx):
+                usual = "Arguments" if parameter.param_type_name == "argument" else "Options"
+                groups.setdefault(getattr(parameter, "rich_help_panel", None) or usual, []).append(record)
+        for name, records in groups.items():
+            with formatter.section(name):
+                formatter.write_dl(records)
+
+
+class Commands(TyperGroup):
+    """All commands: their help has the first sentence of each whole, where it would be cut at the line's end."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write the list of commands."""
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, one.get_short_help_str(1000)) for name, one in self.commands.items()])
+
+
+class BareOptions(Command):
     """A command whose options may stand bare."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:

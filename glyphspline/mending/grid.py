@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..arrays import ascending
 from ..checks.segments import end_curvature, turn_of
 from ..compiled import compiled
 from ..types import BoolArray, ComplexArray, FloatArray, IntArray
@@ -127,7 +128,7 @@ def places_near(points: ComplexArray, of: Rounding, k: int, triple: IntArray, n:
             if across <= ACROSS * step * abs(along) and abs(middle + way - old) <= of.most_move and middle + way != now:
                 found[count] = middle + way
                 count += 1
-    return found[np.argsort(np.abs(found[:count] - best))]
+    return found[ascending(np.abs(found[:count] - best))]
 
 
 @compiled
@@ -136,14 +137,18 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
     first, node, last = [places_near(points, of, k, triple, n) for n in range(3)]
     if len(first) * len(node) * len(last) == 1:
         return False
-    S, size = of.frozen.shape[1], 1 / of.step**2
+    S, size = of.frozen.shape[1], 1 / (of.step * of.step)
     now, best, cost = points[k, triple], np.zeros(3, dtype=np.complex128), np.zeros((6, 6))
     off = np.zeros(2 * S)  # what others are off their best places
     for i in range(points.shape[1]):
         s = of.number[i]
         if s >= 0 and i != triple[0] and i != triple[1] and i != triple[2]:
             off[2 * s], off[2 * s + 1] = points[k, i].real - of.best[k, i].real, points[k, i].imag - of.best[k, i].imag
-    base, pull = size * (off @ of.cost[k] @ off), 2 * size * (of.cost[k] @ off)
+    base, pull = 0.0, np.zeros(2 * S)
+    for s in range(2 * S):
+        for t in range(2 * S):
+            pull[s] += of.cost[k, s, t] * off[t]
+        base, pull[s] = base + size * off[s] * pull[s], 2 * size * pull[s]
     pulls, slopes = np.zeros(6), np.zeros((len(moves), 6))
     for n in range(3):
         best[n], s = of.best[k, triple[n]], of.number[triple[n]]
@@ -206,13 +211,19 @@ def price_of(way: FloatArray, base: float, pulls: FloatArray, cost: FloatArray) 
 def without_last(base: float, pulls: FloatArray, cost: FloatArray) -> tuple[float, FloatArray, FloatArray]:
     """The least price over the last two of all moves, as one of the others; see :func:`price_of`."""
     n = len(pulls) - 2
-    own, pull, mixed = cost[n:, n:], pulls[n:], np.ascontiguousarray(cost[n:, :n])
+    own, mixed = cost[n:, n:], cost[n:, :n]
     size = own[0, 0] * own[1, 1] - own[0, 1] * own[1, 0]
     if size <= 0:  # of a point that does not move
         return base, pulls[:n].copy(), cost[:n, :n].copy()
-    inverse = np.array([[own[1, 1], -own[0, 1]], [-own[1, 0], own[0, 0]]]) / size
-    by_others = inverse @ mixed
-    return base - pull @ inverse @ pull / 4, pulls[:n] - pull @ by_others, cost[:n, :n] - mixed.T @ by_others
+    x = (own[1, 1] * pulls[n] - own[0, 1] * pulls[n + 1]) / size
+    y = (own[0, 0] * pulls[n + 1] - own[1, 0] * pulls[n]) / size
+    left, by_others = pulls[:n].copy(), cost[:n, :n].copy()
+    for i in range(n):
+        left[i] -= x * mixed[0, i] + y * mixed[1, i]
+        u, v = own[1, 1] * mixed[0, i] - own[0, 1] * mixed[1, i], own[0, 0] * mixed[1, i] - own[1, 0] * mixed[0, i]
+        for j in range(n):
+            by_others[j, i] -= (mixed[0, j] * u + mixed[1, j] * v) / size
+    return base - (x * pulls[n] + y * pulls[n + 1]) / 4, left, by_others
 
 
 @compiled
@@ -258,14 +269,16 @@ def priced(
             else:
                 value = abs(turn_of(y - x, z - y))
             share = value / (of.most[b, place] + LEAST)
-            total += share * share + BEYOND * max(share - 1, 0.0) ** 2
+            beyond = max(share - 1, 0.0)
+            total += share * share + BEYOND * beyond * beyond
             if not total < most:
                 return np.inf
     for r in range(len(moved)):
         way = moved[r]
         for n in range(6):
             way += slopes[r, n] * change[n]
-        total += BEYOND * max(abs(way) / of.limit - 1, 0.0) ** 2
+        beyond = max(abs(way) / of.limit - 1, 0.0)
+        total += BEYOND * beyond * beyond
         if not total < most:
             return np.inf
     return total

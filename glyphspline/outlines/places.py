@@ -92,10 +92,14 @@ def _stepped(corners: FloatArray, length: float, step: float, max_ratio: float, 
     if not np.max(sections) / step < most:
         return np.empty(0)
     parts = np.maximum(np.rint(sections / step - TIE), 1.0)
-    parts *= 3 if np.sum(parts) < 3 else 1
-    if np.sum(parts) > most:
+    total = 0.0
+    for part in parts:
+        total += part
+    if total < 3:
+        parts, total = 3 * parts, 3 * total
+    if total > most:
         return np.empty(0)
-    at, i = np.empty(int(np.sum(parts))), 0
+    at, i = np.empty(int(total)), 0
     for j in range(len(corners)):
         for k in range(int(parts[j])):
             at[i] = corners[j] + k * (sections[j] / parts[j])

@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fontTools import agl
 
 from ..errors import FontError, GlyphsplineError
 from ..outlines.outline import FontMetrics, Outline
@@ -127,6 +126,8 @@ def svg_root(file: Path) -> Any:
 def _unicodes(written: str | None, name: str) -> tuple[int, ...]:
     if written is not None:
         return tuple(int(code, 16) for code in re.findall(r"U\+([0-9A-Fa-f]{1,6})", written))
+    from fontTools import agl
+
     text = name if len(name) == 1 else agl.toUnicode(name)
     return (ord(text),) if len(text) == 1 else ()
 

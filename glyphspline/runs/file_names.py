@@ -10,14 +10,16 @@ from itertools import chain
 from itertools import count as count_from
 from pathlib import Path
 
-from fontTools.ufoLib.filenames import reservedFileNames, userNameToFileName
-
 from ..types import Names
 
 LONGEST_NAME = 150
 """Bytes of a file name before its suffix. File systems take 255; the rest is for clash numbers and suffixes."""
 
-_RESERVED = frozenset(reservedFileNames)
+_RESERVED = frozenset(
+    ["con", "prn", "aux", "nul", "clock$", *(f"{port}{k}" for port in ("com", "lpt") for k in range(1, 10))]
+)
+"""Devices of Windows."""
+
 _PLAIN = re.compile(r"[A-Za-z0-9_-](?:[A-Za-z0-9_.-]{0,72}[A-Za-z0-9_-])?")
 """Names that are taken as they are, unless a part of them between dots is the name of a device of Windows."""
 
@@ -80,6 +82,8 @@ def _is_seen(character: str) -> bool:
 
 def _by_rule(name: str, taken: set[str]) -> str:
     """The file name by the UFO rule, an underscore after each capital, which is added to ``taken``."""
+    from fontTools.ufoLib.filenames import userNameToFileName  # takes as long to import as a glyph to convert
+
     # The UFO rule makes no valid name of one that is too long in bytes, empty, or has lone surrogates.
     clipped = _NOT_TEXT.sub("_", name).encode()[: LONGEST_NAME // 2]  # capitals take two characters under the rules
     tame = clipped.decode(errors="ignore").rstrip(". ") or "_"

@@ -72,7 +72,8 @@ def canonical_contours(given: FloatArray, begins: IntArray) -> CanonicalContours
                 table[:] = own
             else:
                 for i in range(m * TABLE):
-                    square = (own[i + 1] - own[i]) ** 2
+                    step = own[i + 1] - own[i]
+                    square = step * step
                     table[i + 1] = square if v == 0 else table[i + 1] + square
         if K > 1:
             table[0] = 0.0

@@ -263,8 +263,8 @@ def sparse(
                 square, product = square + a * a, product + a * (points[i, axis] - points[i - 1, axis])
             along = min(max(product / square, 0.0), 1.0) if square > 0 else 0.0
             for axis in range(points.shape[1]):
-                b = points[i, axis] - points[i - 1, axis]
-                height += (b - along * (points[k, axis] - points[i - 1, axis])) ** 2
+                b = points[i, axis] - points[i - 1, axis] - along * (points[k, axis] - points[i - 1, axis])
+                height += b * b
             expected[i] = max(expected[i], np.sqrt(height))
     order, left = ascending(expected), n
     for k in range(n):

@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 import uharfbuzz as hb
 
-from ...compiled import callback, compiled
+from ...compiled import callback, compiled, inlined
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...outlines.segments import keep_lasting
@@ -212,6 +212,12 @@ def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
     return found
 
 
+@inlined
+def _word(glyf: Any, at: int) -> Any:
+    """A number of two bytes. NumPy's own shift would keep one."""
+    return np.int64(glyf[at]) << 8 | np.int64(glyf[at + 1])
+
+
 @compiled
 def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
     """The number for one glyph: ``UNUSUAL`` if a record is broken, or it has too many components, as in a loop."""
@@ -226,7 +232,7 @@ def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
             continue
         if at + 10 > end:
             return UNUSUAL
-        contours = glyf[at] << 8 | glyf[at + 1]
+        contours = _word(glyf, at)
         at += 10
         more = contours >= 0x8000
         if not more:
@@ -235,7 +241,7 @@ def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
                 return UNUSUAL
             last = -1
             for j in range(at, at + 2 * contours, 2):
-                point = glyf[j] << 8 | glyf[j + 1]
+                point = _word(glyf, j)
                 if point <= last:
                     return UNUSUAL
                 last = point
@@ -243,8 +249,8 @@ def _expected_of(glyf: Any, loca: IntArray, gid: int, pending: IntArray) -> int:
             components += 1
             if at + 4 > end or components > MAX_COMPONENTS:
                 return UNUSUAL
-            flags = glyf[at] << 8 | glyf[at + 1]
-            pending[count] = glyf[at + 2] << 8 | glyf[at + 3]
+            flags = _word(glyf, at)
+            pending[count] = _word(glyf, at + 2)
             count += 1
             at += 8 if flags & 0x01 else 6
             at += 2 if flags & 0x08 else 4 if flags & 0x40 else 8 if flags & 0x80 else 0

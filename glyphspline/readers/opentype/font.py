@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import uharfbuzz as hb
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import readTTCHeader
 
@@ -31,6 +32,9 @@ if TYPE_CHECKING:
 REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
 OUTLINES = ("glyf", "CFF ", "CFF2")
 PICTURES = ("EBDT", "CBDT", "sbix", "SVG ", "bdat")
+
+FAMILY, STYLE = (21, 16, 1), (22, 17, 2)
+"""Entries of the name table, the best first."""
 
 MOST_FACES = 1000
 """Limit of faces of a collection: each takes four bytes of a hostile file, and the time of a font."""
@@ -70,24 +74,20 @@ class Font(Source):
             what = f"only pictures ({', '.join(pictures)})" if pictures else "no table glyf, CFF or CFF2"
             raise FontError(f"has no outlines: {what}")
         self.outer = -1 if "glyf" in tables else 1
-        names, variations = tables.get("name"), tables.get("fvar")
-        self.family = printable((names and names.getBestFamilyName()) or "") or path.stem
-        self.style = printable((names and names.getBestSubFamilyName()) or "") or "Regular"
-        if variations:
-
-            def name_of(name_id: int) -> str | None:
-                return names.getDebugName(name_id) if names else None
-
+        names = hb.Face(hb.Blob(self._plain), face_index)
+        self.family = printable(name_of(names, *FAMILY)) or path.stem
+        self.style = printable(name_of(names, *STYLE)) or "Regular"
+        if variations := tables.get("fvar"):
             if not all(isinstance(axis.axisTag, str) for axis in variations.axes):
                 raise FontError("has an axis whose tag is not of ASCII characters")
             self.axes = tuple(
                 DesignAxis(
-                    a.axisTag, name_of(a.axisNameID) or a.axisTag, min(a.minValue, a.defaultValue), a.defaultValue,
-                    max(a.maxValue, a.defaultValue),  # as HarfBuzz has it where they are not in order
+                    a.axisTag, name_of(names, a.axisNameID) or a.axisTag,
+                    min(a.minValue, a.defaultValue), a.defaultValue, max(a.maxValue, a.defaultValue),  # as HarfBuzz
                 )
                 for a in variations.axes
             )  # fmt: skip
-            instances = [(name_of(instance.subfamilyNameID), instance) for instance in variations.instances]
+            instances = [(name_of(names, instance.subfamilyNameID), instance) for instance in variations.instances]
             self.instances = {name: dict(instance.coordinates) for name, instance in instances if name}
         self.location = self.clamped(location)
         self.metrics = self._default_metrics = metrics_of(tables)
@@ -162,6 +162,18 @@ class Font(Source):
         from .bulk import BulkReader  # imports the compiler, which opening and selecting do not need
 
         return BulkReader(self.path, self._face)
+
+
+def name_of(face: hb.Face, *ids: int) -> str:
+    """The first of some entries of the name table that a face has, in English or else in any language; "": it has none.
+
+    HarfBuzz reads them, as importing fontTools' name table takes longer than opening a font.
+    """
+    for name_id in ids:
+        languages = [entry.language for entry in face.list_names() if entry.name_id == name_id]
+        if languages:
+            return face.get_name(name_id, "en" if "en" in languages else languages[0]) or ""
+    return ""
 
 
 def printable(text: str) -> str:
