@@ -38,11 +38,12 @@ class Compiled:
 
     Attributes:
         py_func: the Python function.
+        plain: what runs in its place where there is no code: itself, or its form in NumPy, see :func:`in_numpy`.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
         update_wrapper(self, function)
-        self.py_func = function
+        self.py_func = self.plain = function
         self._edition, self._code, self._lacks = -1, None, False
         everything.append(self)
 
@@ -56,15 +57,15 @@ class Compiled:
             except NoCodeError:  # learning it takes longer than some functions do
                 self._lacks = True
         if _thread.is_plain:
-            return self.py_func(*arguments)
-        return self._plain(arguments)
+            return self.plain(*arguments)
+        return self._run_plain(arguments)
 
     def _choose(self) -> None:
         """Take machine code for callers in Python, if there is any."""
         self._edition, self._lacks = kept.edition, False  # first: what changes meanwhile is asked for again
         self._code = self.entry if kept.has(self.py_func, "entry") else None
 
-    def _plain(self, arguments: tuple[Any, ...]) -> Any:
+    def _run_plain(self, arguments: tuple[Any, ...]) -> Any:
         """Run as Python, called from outside of all compiled functions."""
         if kept.look_again():
             return self(*arguments)
@@ -72,7 +73,7 @@ class Compiled:
         _thread.is_plain = True
         try:
             with np.errstate(all="ignore"):
-                return self.py_func(*arguments)
+                return self.plain(*arguments)
         finally:
             _thread.is_plain = False
             spend(time.perf_counter() - started)
@@ -144,6 +145,20 @@ everything: list[Compiled] = []
 def compiled(function: Function) -> Function:
     """Mark a function of scalars, arrays and named tuples of them that can be compiled: see :class:`Compiled`."""
     return Compiled(function)  # type: ignore[return-value]
+
+
+def in_numpy(of: Function) -> Callable[[Function], Function]:
+    """A decorator for the form in NumPy of a compiled function, which gives the same bits: it runs as plain Python.
+
+    In the name's place comes the compiled function.
+    """
+
+    def mark(function: Function) -> Function:
+        form: Any = of
+        form.plain = function
+        return of
+
+    return mark
 
 
 def inlined(function: Function) -> Function:

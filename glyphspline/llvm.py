@@ -12,31 +12,6 @@ from numba.extending import intrinsic
 from . import intrinsics
 
 
-def _fma(context: Any, a: Any, b: Any, c: Any) -> Any:
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.fma(*arguments)
-
-    return types.float64(types.float64, types.float64, types.float64), code
-
-
-def _select(context: Any, condition: Any, a: Any, b: Any) -> Any:
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.select(*arguments)
-
-    if isinstance(condition, types.Boolean) and a == b:
-        return a(condition, a, b), code
-    return None
-
-
-def _wide_vectors(context: Any) -> Any:
-    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        # llvmlite's own list of attributes has none with a value.
-        set.add(builder.function.attributes, '"prefer-vector-width"="512"')
-        return context.get_dummy_value()
-
-    return types.none(), code
-
-
 def _borrowed(context: Any, value: Any) -> Any:
     def uncounted(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         if isinstance(kind, types.BaseTuple):
@@ -65,9 +40,6 @@ def _keep_alive(context: Any, owners: Any) -> Any:
 
 
 _MADE = {
-    intrinsics.fma: intrinsic(_fma),
-    intrinsics.select: intrinsic(_select),
-    intrinsics.wide_vectors: intrinsic(_wide_vectors),
     intrinsics.borrowed: intrinsic(_borrowed),
     intrinsics.keep_alive: intrinsic(_keep_alive),
 }

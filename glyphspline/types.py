@@ -16,6 +16,9 @@ ComplexArray: TypeAlias = "NDArray[np.complex128]"
 BoolArray: TypeAlias = "NDArray[np.bool_]"
 """Text, so that a command can read its options without NumPy."""
 
+Real: TypeAlias = Any
+"""A number, or an array of numbers: of functions that are compiled for one and used in NumPy for many."""
+
 Names: TypeAlias = Literal["glyph", "unicode", "gid", "char"]
 """What the files of glyphs are called after."""
 

@@ -1,7 +1,7 @@
 """A search for footpoints that are not the nearest: seeded cases, evolved where answers are off, checked in 60 digits.
 
-Two searches are attacked: ``search_piece`` on one piece of degree 2 to 6 (``pieces``), and the passes of variants 1 to
-3, SIMD lanes and the second look at flagged ones, on the two spans beside a knot with free control points (``lanes``).
+Two searches are attacked: ``search_piece`` on one piece of degree 2 to 6 (``pieces``), and the pass of variants 1 to 4
+with the second look at what it leaves, on the two spans beside a knot with free control points (``passes``).
 Cases are drawn where the nearest point is hard to find: the vertex near the evolute, at a cusp, near the curve, or as
 far from one point as from another; control points on a lattice, on a line, or twice the same. In rounds, those with the
 largest misses are kept and changed a little.
@@ -14,7 +14,7 @@ Answers that say they are not certified are counted.
 
 Of 4 million cases (``make check-reference``) the largest miss is 5.0e-13, and 2 are not certified, of degree 6. The
 depth-first search that gave up silently after 4000 parts missed by up to 5.8e-6 in the first 160,000 cases of
-``lanes``.
+``passes``.
 """
 
 from __future__ import annotations
@@ -30,23 +30,21 @@ import numpy as np
 
 from glyphspline.code_files import kept
 from glyphspline.compiled import compiled
-from glyphspline.interpolation.kernels.blocks import (
-    BAD,
+from glyphspline.interpolation.kernels.driver import PAD
+from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
+from glyphspline.interpolation.kernels.passes import (
+    AXIS,
     BLOCK,
     HIGH,
-    LANES,
     LOW,
-    PAIR,
     SCRATCH,
-    SECOND,
-    STRIDE,
-    WIDTH,
+    WHOLE,
     X,
-    _weights,
+    guard_for,
+    one_pass,
+    set_weights,
 )  # fmt: skip
-from glyphspline.interpolation.kernels.certificate import GIVEN_UP, flagged
-from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
-from glyphspline.interpolation.kernels.newton_simd import seek
+from glyphspline.interpolation.kernels.search import settle
 from glyphspline.interpolation.method import TIE_DISTANCE
 from glyphspline.types import FloatArray, IntArray
 
@@ -65,11 +63,6 @@ KEPT = 500
 """Number of cases, those with the largest misses, that others are made from; forgotten after ``RESTART`` rounds."""
 
 RESTART = 20
-SPACING = 6
-"""Lanes between two cases in a block: each has five control points and six knot intervals of its own."""
-
-PER_BLOCK = (LANES - 4) // SPACING
-
 Generator = np.random.Generator
 
 
@@ -126,43 +119,39 @@ def answer_pieces(c: FloatArray, reach: FloatArray, found: FloatArray) -> None:
 
 
 @compiled
-def answer_lanes(
+def answer_passes(
     P: FloatArray, h: FloatArray, p: FloatArray, reach: FloatArray, c: FloatArray, found: FloatArray
 ) -> None:
-    """Answers of the SIMD passes; as :func:`answer_pieces`.
+    """Answers of the pass over the vertices; as :func:`answer_pieces`.
 
     Args:
         P: (n, 5, 2) control points; h: (n, 6) knot intervals, the middle knot between the third and the fourth.
         p: (n, 2) vertices; reach: (n, 4) interval about the middle knot, first parameter, not used.
         c: (n, 2, 2, 4) coefficients of the pieces to the left and to the right, about the knot, p as the origin.
     """
-    block, S, steps = np.zeros(BLOCK), np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.ones(LANES + 8)
-    controls, vertices, following = np.zeros(PAIR), np.zeros(PAIR), np.zeros(PAIR)
-    for first in range(0, P.shape[0], PER_BLOCK):
-        count = min(PER_BLOCK, P.shape[0] - first)
-        for k in range(count):
-            lane = np.uint64(SPACING * k + 4)
-            for i in range(6):
-                steps[SPACING * k + 3 + i] = h[first + k, i]
+    size, guard = 2 * PAD + WHOLE, guard_for(2)
+    steps, controls, following, vertices = np.ones(size), np.zeros((2, size)), np.zeros((2, size)), np.zeros((2, size))
+    blocks, S, T, work = np.zeros(BLOCK), np.zeros(SCRATCH), np.zeros(2 * AXIS), np.zeros(WORK)
+    a, b, e = np.zeros((4, 2)), np.zeros((2, 4)), np.zeros(2)
+    for k in range(P.shape[0]):
+        for i in range(6):
+            steps[PAD - 3 + i] = h[k, i]
+        for axis in range(2):
             for i in range(5):
-                controls[lane + np.uint64(i) - np.uint64(2)] = P[first + k, i, 0]
-                controls[SECOND + lane + np.uint64(i) - np.uint64(2)] = P[first + k, i, 1]
-            vertices[lane], vertices[SECOND + lane] = p[first + k, 0], p[first + k, 1]
-            block[LOW + lane], block[HIGH + lane] = reach[first + k, 0], reach[first + k, 1]
-            block[X + lane] = reach[first + k, 2]
-        _weights(block, steps, np.uint64(0), np.uint64(LANES))
-        if seek(block, controls, vertices, following, S, LANES)[0] > 0:
-            flagged(block, controls, vertices, following, S, 2, LANES)
-        for k in range(count):
-            lane, j = np.uint64(SPACING * k + 4), first + k
-            x = block[X + lane]
-            found[j, 0], found[j, 1] = x, S[BAD + lane] != GIVEN_UP
-            nearest = np.inf
-            if reach[j, 0] <= min(0.0, reach[j, 1]):
-                nearest = sampled_distance(c[j, 0], reach[j, 0], min(0.0, reach[j, 1]))
-            if reach[j, 1] >= max(0.0, reach[j, 0]):
-                nearest = min(nearest, sampled_distance(c[j, 1], max(0.0, reach[j, 0]), reach[j, 1]))
-            found[j, 2] = distance_at(c[j, 0 if x < 0.0 else 1], x) - nearest
+                controls[axis, PAD - 2 + i] = P[k, i, axis]
+            vertices[axis, PAD] = p[k, axis]
+        set_weights(steps, PAD, PAD + 1, blocks)
+        blocks[LOW], blocks[HIGH], blocks[X] = reach[k, 0], reach[k, 1], reach[k, 2]
+        lost = 0
+        if one_pass(controls, following, vertices, blocks, S, T, PAD, PAD + 1, guard)[1] > 0:
+            lost = settle(controls, following, vertices, steps, blocks, PAD, PAD + 1, False, guard, a, b, e, work)[2]
+        x, nearest = blocks[X], np.inf
+        found[k, 0], found[k, 1] = x, 1.0 if lost == 0 else 0.0
+        if reach[k, 0] <= min(0.0, reach[k, 1]):
+            nearest = sampled_distance(c[k, 0], reach[k, 0], min(0.0, reach[k, 1]))
+        if reach[k, 1] >= max(0.0, reach[k, 0]):
+            nearest = min(nearest, sampled_distance(c[k, 1], max(0.0, reach[k, 0]), reach[k, 1]))
+        found[k, 2] = distance_at(c[k, 0 if x < 0.0 else 1], x) - nearest
 
 
 def enclosed_distance(c: list[list[Decimal]], low: Decimal, high: Decimal) -> Decimal:
@@ -315,8 +304,8 @@ class Pieces(NamedTuple):
             return float(exact_distance(c, Decimal(x)) - enclosed_distance(c, low, high))
 
 
-class Lanes(NamedTuple):
-    """Cases of the SIMD passes; ``P``, ``h``, ``p`` and ``reach`` as in :func:`answer_lanes`."""
+class Passes(NamedTuple):
+    """Cases of the passes; ``P``, ``h``, ``p`` and ``reach`` as in :func:`answer_passes`."""
 
     P: FloatArray
     h: FloatArray
@@ -324,7 +313,7 @@ class Lanes(NamedTuple):
     reach: FloatArray
 
     @classmethod
-    def draw(cls, rng: Generator, n: int) -> Lanes:
+    def draw(cls, rng: Generator, n: int) -> Passes:
         """Cases of every kind."""
         P = degenerate(rng, rng.standard_normal((n, 5, 2)))
         h = np.exp(rng.choice([0.0, 0.5, 1.5], n)[:, None] * rng.standard_normal((n, 6)))
@@ -344,19 +333,19 @@ class Lanes(NamedTuple):
         q, velocity, bend = _at(coefficients(P, h, origin), y)
         return cls(P, h, vertices(rng, q, velocity, bend), intervals(rng, -h[:, 2], h[:, 3]))
 
-    def changed(self, rng: Generator, n: int) -> Lanes:
+    def changed(self, rng: Generator, n: int) -> Passes:
         """n cases, each a little different from one of these."""
         which = rng.integers(0, len(self.P), n)
         P, p, reach = self.P[which], self.p[which], self.reach[which]
         P = P * (1 + small(rng, n)[:, None, None] * rng.standard_normal(P.shape) * (rng.random(P.shape) < 0.3))
         p = p + small(rng, n)[:, None] * rng.standard_normal(p.shape) * (rng.random(n) < 0.7)[:, None]
         other = intervals(rng, -self.h[which, 2], self.h[which, 3])
-        return Lanes(P, self.h[which], p, np.where((rng.random(n) < 0.2)[:, None], other, reach))
+        return Passes(P, self.h[which], p, np.where((rng.random(n) < 0.2)[:, None], other, reach))
 
     def answers(self) -> FloatArray:
-        """As :func:`answer_lanes` has them."""
+        """As :func:`answer_passes` has them."""
         found = np.empty((len(self.P), 3))
-        answer_lanes(self.P, self.h, self.p, self.reach, coefficients(self.P, self.h, self.p), found)
+        answer_passes(self.P, self.h, self.p, self.reach, coefficients(self.P, self.h, self.p), found)
         return found
 
     def sizes(self) -> FloatArray:
@@ -381,9 +370,9 @@ class Lanes(NamedTuple):
 
 
 def coefficients(P: FloatArray, h: FloatArray, p: FloatArray) -> FloatArray:
-    """(n, 2, 2, 4) coefficients of the pieces left and right of the middle knot, by the formulas of ``newton_simd``.
+    """(n, 2, 2, 4) coefficients of the pieces left and right of the middle knot, by the formulas of ``kernels.passes``.
 
-    The arguments, as in :func:`answer_lanes`, may be arrays of decimals.
+    The arguments, as in :func:`answer_passes`, may be arrays of decimals.
     """
     d = 3 * (P[:, 1:] - P[:, :-1]) / (h[:, :4] + h[:, 1:5] + h[:, 2:6])[..., None]
     w = (d[:, 1:] - d[:, :-1]) / (h[:, 1:4] + h[:, 2:5])[..., None]
@@ -458,8 +447,8 @@ def attack(name: str, degree: int, cases: int, checks: int, seed: int) -> Found:
     """Half of the cases are drawn, the other half evolved from those with the largest misses.
 
     Args:
-        name: "pieces" or "lanes".
-        degree: of the pieces; lanes are cubic.
+        name: "pieces" or "passes".
+        degree: of the pieces; passes are cubic.
         cases: their number, rounded up to a multiple of ``ROUND``.
         checks: number of cases compared in 60 digits: half the worst by samples, half any.
     """
@@ -470,10 +459,10 @@ def attack(name: str, degree: int, cases: int, checks: int, seed: int) -> Found:
     best_misses = np.empty(0)
     for turn in range(rounds):
         if turn % RESTART == 0 or turn % 2 == 0:
-            now: Any = Lanes.draw(rng, ROUND) if name == "lanes" else Pieces.draw(rng, ROUND, degree)
+            now: Any = Passes.draw(rng, ROUND) if name == "passes" else Pieces.draw(rng, ROUND, degree)
         else:
             now = best.changed(rng, ROUND)
-        with kept.compiling():
+        with kept.compiling():  # as plain Python it takes hours
             found = now.answers()
         sizes = now.sizes()
         misses = found[:, 2] / sizes
@@ -492,7 +481,7 @@ def attack(name: str, degree: int, cases: int, checks: int, seed: int) -> Found:
 
 def attacks(cases: int, checks: int, seed: int) -> list[tuple[str, int, int, int, int]]:
     """The arguments of :func:`attack` for both searches: most of the cases are cubic."""
-    shares = [("lanes", 3, 0.4), ("pieces", 3, 0.4), *(("pieces", degree, 0.05) for degree in (2, 4, 5, 6))]
+    shares = [("passes", 3, 0.4), ("pieces", 3, 0.4), *(("pieces", degree, 0.05) for degree in (2, 4, 5, 6))]
     return [(name, degree, int(share * cases), int(share * checks), seed) for name, degree, share in shares]
 
 

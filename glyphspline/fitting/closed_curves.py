@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -12,7 +14,6 @@ from ..curves.spline_beziers import spline_beziers
 from ..errors import GlyphsplineError
 from ..interpolation.api import interpolate_batch
 from ..interpolation.batch import NONE_HELD
-from ..interpolation.driver import interpolate_any_degree
 from ..interpolation.kernels.driver import distance
 from ..interpolation.method import Fallback, Method
 from ..interpolation.polygon import explain
@@ -26,8 +27,8 @@ from .measures import distance_columns, solved_columns
 from .options import Options
 from .results import ConvertedContours
 
-History = tuple[tuple[FloatArray, FloatArray], ...]
-"""Control points (n, 2) and parameters (n,) pass by pass."""
+History = dict[int, tuple[FloatArray, FloatArray]]
+"""Control points (n, 2) and parameters (n,) after numbers of updates."""
 
 CERTAIN_RATIO = 6.0
 """Basis functions rise above 1/2 as long as adjacent knot intervals are within 6.15 of each other."""
@@ -64,14 +65,16 @@ def interpolated(
     return found
 
 
-def recorded(points: FloatArray, options: Options) -> History:
-    """Control points and footpoints' parameters of a closed polygon (n, 2) before each of its updates, and at the end.
+def recorded(points: FloatArray, options: Options, updates: Iterable[int]) -> History:
+    """Control points and footpoints' parameters of a closed polygon (n, 2) after numbers of updates.
 
-    The run is that of :func:`interpolated`, by the passes that keep what they do.
+    Each is a run of its own, stopped there: they take as long as the passes that they make, and nothing is kept twice.
     """
-    _, even = chords_of(points, min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9))
-    method = method_for(options, "knot" if even else options.fallback)
-    return interpolate_any_degree(points, method, keep_history=True).history or ()
+    offsets, found = np.array([0, len(points)]), {}
+    for m in updates:
+        run = interpolated(points, offsets, replace(options, max_iterations=m))[0]
+        found[m] = run.spline.control_points, run.parameters
+    return found
 
 
 def beziers(controls: FloatArray, knots: FloatArray, offsets: IntArray, unit: float) -> tuple[FloatArray, FloatArray]:

@@ -12,11 +12,10 @@ from numpy.typing import ArrayLike
 
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import BoolArray, FloatArray, IntArray
-from .batch import NONE_HELD, over_threads, run_batch
-from .driver import interpolate_any_degree, interpolate_any_vertex, solved
-from .method import Fallback, Finish, Method, Parametrisation, Tangents, method_of
+from .batch import NONE_HELD, run_batch
+from .method import Fallback, Method, Parametrisation, Tangents, method_of
 from .polygon import as_points, as_tangents, explain
-from .result import BatchedInterpolation, Found, Interpolation
+from .result import BatchedInterpolation, Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
 
@@ -33,7 +32,6 @@ def interpolate(
     max_iterations: int = 1000,
     closed: bool = True,
     end_tangents: Tangents | None = None,
-    finish: Finish = "iterate",
     diagnostics: bool = False,
 ) -> Interpolation:
     """Put a B-spline curve through the vertices of a polygon by geometric interpolation.
@@ -48,7 +46,7 @@ def interpolate(
         variant: where footpoints are sought (Table 1): 0 (u_{i-2}, u_{i+2}); 1 (u_{i-1}, u_{i+1}); 2 the interval
             of Lemma 2, which guarantees convergence; 3 only u_i; 4 as 2, but each control point is updated at
             once (Algorithm 3 instead of 2).
-        degree: 2 to 6. An open arc is cubic.
+        degree: 2 to 6. An open arc is cubic. Other degrees than 3 take some 0.3 ms a footpoint.
         margin: c ≥ 0 of Lemma 2. With c > 0 the largest error shrinks at least by 1 - 2c a step (Theorem 2), unless a
             basis function stays below 1/2 + c: see ``rate_bound`` of the result. The first and the last inner vertex of
             an arc have c = 1/16 at least, whatever the knots.
@@ -62,10 +60,8 @@ def interpolate(
         closed: a closed curve, or an arc from the first vertex to the last, clamped at both.
         end_tangents: of an open arc, the derivatives (τ_0, τ_1) by chord length at its ends, (d,) unit vectors as a
             rule; None for a natural end (no curvature there).
-        finish: "iterate" is the paper's limit. "solve" freezes the footpoints once the largest error is below 3/1000 of
-            the mean chord and solves for the control points: another curve through the same vertices, beside the first
-            by some 5e-4 of the mean chord.
-        diagnostics: also keep every iteration, and compute the norms and spectral radii of Section 3 (O(n³) a step).
+        diagnostics: also keep every iteration, and compute the norms and spectral radii of Section 3 (O(n³) a step), as
+            slowly.
 
     Raises:
         PolygonError: the polygon or its knots cannot be interpolated; the message says why.
@@ -83,7 +79,7 @@ def interpolate(
     """
     own = not isinstance(knots, str)
     method = method_of(
-        variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed, finish,
+        variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed,
         diagnostics,
     )  # fmt: skip
     tangents = None if end_tangents is None else [end_tangents]
@@ -188,18 +184,12 @@ def interpolate_each(
     if tangents is not None and not method.closed:
         ends = as_tangents([tangents[k] for k in good], parts[0].shape[1])
 
-    def one(j: int) -> Interpolation | PolygonError:
-        try:
-            result = interpolate_any_degree(
-                parts[j], method, given[j] if given else None, None if ends is None else ends[j]
-            )
-        except PolygonError as error:
-            return error
-        return replace(result, points=np.delete(parts[j], result.merged, axis=0)) if keep_points else result
-
     found: list[Any]
-    if method.stepwise:
-        found = over_threads(one, range(len(good)), threads)
+    if method.readable:
+        found = [
+            _readable(parts[j], method, given[j] if given else None, tangents[k] if tangents else None, keep_points)
+            for j, k in enumerate(good)
+        ]
     else:
         points, offsets = parts[0] if len(parts) == 1 else np.concatenate(parts), [0, *accumulate(map(len, parts))]
         knots = np.concatenate(given) if given else None
@@ -207,10 +197,19 @@ def interpolate_each(
         found = batch.results((points.copy() if len(parts) == 1 else points) if keep_points else None)
     for j, k in enumerate(good):
         results[k] = found[j] or explain(parts[j], given[j] if given else method.knots, method.closed)
-        if method.finish == "solve" and isinstance(found[j], Interpolation):
-            tolerance = method.tolerance_for(float(np.ptp(parts[j], axis=0).max()))
-            results[k] = solved(found[j], parts[j], None if ends is None else ends[j], tolerance)
     return results
+
+
+def _readable(
+    p: FloatArray, method: Method, knots: FloatArray | None, tangents: Tangents | None, keep_points: bool
+) -> Interpolation | PolygonError:
+    from .reference import interpolate_by  # not needed for what the kernels have
+
+    try:
+        result = interpolate_by(method, p, knots, tangents)
+    except PolygonError as error:
+        return error
+    return replace(result, points=np.delete(p, result.merged, axis=0)) if keep_points else result
 
 
 def _as_knots(knots: ArrayLike, p: FloatArray, closed: bool) -> FloatArray:
@@ -247,8 +246,10 @@ def interpolate_vertex(
         PolygonError: the polygon cannot be interpolated, or has no vertex k.
         OptionError: an option out of its range.
     """
+    from .reference import interpolate_one_vertex
+
     method = Method(1, residual_tolerance=residual_tolerance, max_iterations=max_iterations)
-    return interpolate_any_vertex(points, k, method, whole_curve)
+    return interpolate_one_vertex(points, k, method, whole_curve)
 
 
 def interpolate_batch(
@@ -277,7 +278,7 @@ def interpolate_batch(
             or ().
         threads: number of threads; None for one a core. Results do not depend on it.
     """
-    count, closed = len(offsets) - 1, method.closed
+    count = len(offsets) - 1
     peak_shares = np.full(count, method.peak_share)
     if by_knot is not None:
         peak_shares[by_knot] = 0.0
@@ -285,32 +286,4 @@ def interpolate_batch(
         tolerances = np.full(count, np.nan if method.residual_tolerance is None else method.residual_tolerance)
     else:
         tolerances = residual_tolerances.copy()
-    if not method.stepwise:
-        return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads, held)
-    arrays = Found.empty(len(points), count, closed, points.shape[1])
-    u, P, parameters, bounds, kept, whole, rates = arrays
-    whole[:] = np.array([1, 0, -1, 0, 0, 0])
-    residuals = [np.empty(0)] * count
-
-    def one(k: int) -> None:
-        a, b = offsets[k : k + 2].tolist()
-        own = replace(
-            method,
-            fallback="peak" if peak_shares[k] > 0.0 else "knot",
-            residual_tolerance=None if np.isnan(tolerances[k]) else float(tolerances[k]),
-        )
-        given = None if knots is None or method.knots else knots[a + k * closed : b + (k + 1) * closed]
-        try:
-            r = interpolate_any_degree(points[a:b], own, given, None if end_tangents is None else end_tangents[k])
-        except PolygonError:
-            return
-        n, first, start = len(r.parameters), a + k * closed, a + 2 * k * (not closed)
-        u[first : first + n + closed], P[start : start + n + 2 * (not closed)] = r.spline.knots, r.spline.control_points
-        parameters[a : a + n], bounds[a : a + n] = r.parameters, r.intervals
-        kept[a : a + n] = np.delete(np.arange(b - a), r.merged)
-        whole[k, :4], whole[k, 5] = (0, n, r.iterations, r.fallbacks), r.uncertified or 0
-        rates[k], residuals[k] = r.rate_bound, r.residuals
-        tolerances[k] = own.tolerance_for(float(np.ptp(points[a:b], axis=0).max()))
-
-    over_threads(one, range(count), threads)
-    return BatchedInterpolation(offsets, closed, tolerances, np.concatenate([*residuals, np.empty(0)]), arrays)
+    return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads, held)

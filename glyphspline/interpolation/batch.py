@@ -1,4 +1,4 @@
-"""Many cubic polygons in one compiled call, over threads: concatenated arrays go in and come out."""
+"""Many cubic polygons in one call, over threads: concatenated arrays go in and come out."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..types import BoolArray, FloatArray, IntArray
-from .method import CHORD_EXPONENT, SETTLED, Method
+from .method import CHORD_EXPONENT, Method
+from .plain import iterate, prepare
 from .result import BatchedInterpolation, Found
 
 GIVEN = -1.0
@@ -37,32 +38,29 @@ def run_batch(
     threads: int | None = 1,
     held: BoolArray = NONE_HELD,
 ) -> BatchedInterpolation:
-    """Run the compiled driver over concatenated polygons; arguments as :func:`.api.interpolate_batch` has them.
+    """Run the driver over concatenated polygons; arguments as :func:`.api.interpolate_batch` has them.
 
     Args:
-        method: of degree 3, variant 1 to 3. peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
+        method: of degree 3, without diagnostics. peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
         tolerances: (K,) residual tolerances; NaN is replaced by the default one.
     """
-    from .kernels import blocks, driver  # at the first call, as they import the compiler
-
     (total, d), count, closed = points.shape, len(offsets) - 1, method.closed
     tangents = NO_TANGENTS
     if not closed:
         tangents = np.full((count, 2, d), np.nan) if end_tangents is None else end_tangents
     exponent = GIVEN if method.knots is None else CHORD_EXPONENT[method.knots]
-    settled = SETTLED if method.finish == "solve" else 0.0
     found = Found.empty(total, count, closed, d)
-    given = (
-        points, offsets, NO_KNOTS if knots is None else knots, tangents, closed, method.variant, float(method.margin),
-        exponent, peak_shares, tolerances, method.max_iterations, settled, held,
-    )  # fmt: skip
 
     def work(part: tuple[int, int]) -> Any:
-        first, stop = part
-        most = total if count == 1 else int((offsets[first + 1 : stop + 1] - offsets[first:stop]).max(initial=1))
-        # NumPy asks for huge pages, which compiled code does not: passes over 60,000 vertices take a fifth less time.
-        memory = np.empty(-(-most // blocks.LANES) * (blocks.BLOCK + 3 * blocks.STRIDE * (d + d % 2)))
-        return driver.run(first, stop, given, tuple(found), memory)
+        prepare(
+            *part, points, offsets, NO_KNOTS if knots is None else knots, tangents, held, peak_shares, tolerances,
+            closed, method.variant, float(method.margin), exponent, found.knots, found.bounds, found.kept, found.whole,
+            found.rates,
+        )  # fmt: skip
+        return iterate(
+            *part, points, offsets, tangents, held, tolerances, closed, method.variant, method.max_iterations,
+            found.knots, found.controls, found.parameters, found.bounds, found.kept, found.whole,
+        )  # fmt: skip
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)

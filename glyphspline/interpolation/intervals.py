@@ -5,28 +5,26 @@ even degree alike.
 
 Row i of I - B has the absolute sum 2 (1 - B_i) on a closed curve. On an arc the control points at the ends do not move
 with those of the vertices, and what their basis functions take leaves less for the row: its sum is 2 (1 - W_i) with
-W_i = B_i + F_i/2, F_i the part of the curve that is fixed. There Lemma 2 holds of W_i: see :mod:`.kernels.lemma2`, and
-:mod:`.reference`. Here every vertex counts as one of a closed curve.
+W_i = B_i + F_i/2, F_i the part of the curve that is fixed. There Lemma 2 holds of W_i: see :func:`arc_intervals`.
+
+All of this is for reading, and for :mod:`.reference`, which the intervals of :mod:`.kernels.lemma2` have to agree with.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
+from ..curves.bspline import Spline
 from ..types import FloatArray
-from .method import PEAK_SHARE, Fallback
+from .method import END_MARGIN, PEAK_SHARE, Fallback
 
 BISECTIONS = 64
 """Number of bisections, enough to reach neighbouring floats."""
-
-END_MARGIN = 1 / 16
-"""Least margin of the first and the last vertex of an arc.
-
-With c = 0 their intervals would begin at the end of the arc, where nothing moves. The largest W_i is above 5/8 for all
-knots, and 9/16 is also ``PEAK_SHARE`` of that.
-"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +105,7 @@ def search_intervals(
     margin: float = 0.0,
     fallback: Fallback = "knot",
 ) -> Intervals:
-    """The interval of every footpoint.
+    """The interval of every footpoint of a closed curve.
 
     Args:
         windows: (n, degree + 2) the knots of each basis function.
@@ -137,3 +135,69 @@ def search_intervals(
             bounds = np.where(low[:, None], centres[:, None], bounds)
     least = np.minimum(basis_function(windows, bounds[:, 0]), basis_function(windows, bounds[:, 1]))
     return Intervals(bounds, int(low.sum()), float(2 * (1 - least.min(initial=1.0))))
+
+
+def arc_intervals(
+    u: FloatArray, spread: FloatArray, windows: FloatArray, centres: FloatArray, variant: int, margin: float,
+    fallback: Fallback,
+) -> Intervals:  # fmt: skip
+    """:func:`search_intervals` for an arc, by W_i for the two vertices next to either end, as far as fixed functions
+    reach.
+
+    W_i takes the place of B_i where its level is not below 1/2, and c is ``END_MARGIN`` at least for the first and the
+    last vertex, where W_i always rises above 5/8.
+    """
+    count, parts = len(windows), [Intervals(np.empty((0, 2)), 0, 0.0)]
+    basis = Spline.trusted(np.zeros((len(spread), 2)), u, 3, False).basis
+    alone = sorted({0, 1, 2, count - 2, count - 1, count} & set(range(count + 1)))
+    for i, stop in pairwise(alone):
+        part = search_intervals(windows[i:stop], centres[i:stop], variant, margin, fallback)
+        if min(i, count - 1 - i) < 2:
+
+            def dominance(t: FloatArray, i: int = i) -> FloatArray:
+                rows = basis(t) @ spread
+                found: FloatArray = rows[:, i] + (1 - rows.sum(axis=1)) / 2
+                return found
+
+            level = 0.5 + (max(margin, END_MARGIN) if i in (0, count - 1) else margin)
+            share = PEAK_SHARE if fallback == "peak" else 1.0
+            found = _level_interval(dominance, windows[i, 1:4], level, share) if variant in (2, 4) else None
+            if variant == 3:
+                part = replace(part, rate_bound=float(2 * (1 - dominance(centres[i:stop])[0])))
+            elif found is not None:
+                part = Intervals(found[None], 0, float(2 * (1 - dominance(found).min())))
+        parts.append(part)
+    bounds, fallbacks, rates = zip(*((part.bounds, part.fallbacks, part.rate_bound) for part in parts), strict=True)
+    return Intervals(np.concatenate(bounds), sum(fallbacks), max(rates))
+
+
+def _level_interval(f: Callable[[FloatArray], FloatArray], knots: FloatArray, level: float, share: float) -> Any:
+    """(2,) where W_i ≥ level, or ``share`` of its maximum if that is lower; None if that is below 1/2.
+
+    Args:
+        f: W_i, at least 1/2 on a single interval between these. knots: (3,) u_{i-1}, u_i, u_{i+1}.
+    """
+    before, knot, after = knots
+    candidates = np.concatenate([_critical(f, before, knot), _critical(f, knot, after)])
+    values = f(candidates)
+    peak, highest = candidates[values.argmax()], values.max()
+    level = min(level, share * highest)
+    if highest <= 0.5 or level < 0.5:
+        return None
+    if highest <= level:
+        return np.array([peak, peak])
+    ends = []
+    for inside, outside in ((peak, before), (peak, after)):
+        for _ in range(BISECTIONS):
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if f(middle[None])[0] >= level else (inside, middle)
+        ends.append(inside)
+    return np.array(ends)
+
+
+def _critical(f: Callable[[FloatArray], FloatArray], start: float, stop: float) -> FloatArray:
+    """The ends of a span and the zeros inside of the derivative of f, a cubic there."""
+    x = np.arange(4) / 3
+    zeros = np.roots(np.polyder(np.polyfit(x, f(start + x * (stop - start)), 3)))
+    inside = zeros.real[(np.abs(zeros.imag) < 1e-9) & (zeros.real > 0) & (zeros.real < 1)]
+    return start + np.concatenate([[0.0], inside, [1.0]]) * (stop - start)

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 Parametrisation: TypeAlias = Literal["chord", "uniform", "centripetal"]
 Fallback: TypeAlias = Literal["knot", "peak"]
-Finish: TypeAlias = Literal["iterate", "solve"]
 Tangents: TypeAlias = "tuple[ArrayLike | None, ArrayLike | None]"
 
 CHORD_EXPONENT: dict[str, float] = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
@@ -32,19 +31,18 @@ Nearer to 1 the interval shrinks to the peak, which freezes the parameters; the 
 the bound of Theorem 2 where peaks are low.
 """
 
+END_MARGIN = 1 / 16
+"""Least margin of the first and the last vertex of an arc.
+
+With c = 0 their intervals would begin at the end of the arc, where nothing moves. The largest W_i is above 5/8 for all
+knots, and 9/16 is also ``PEAK_SHARE`` of that.
+"""
+
 TIE = 1e-12
 """Two squared distances are a tie if they differ by less than this share of them."""
 
 TIE_DISTANCE = 1e-14
 """Distances below this share of the extent count as 0, and as a tie: their last bits are rounding errors."""
-
-SETTLED = 3e-3
-"""``finish="solve"`` freezes the footpoints once the largest error is below this share of the mean chord.
-
-The curve then lies beside the limit of the iteration: measured on contours of glyphs, by 5e-4 of the mean chord
-(median; at most 1.5e-3), on random polygons by 3e-4. At 1e-3 that is a third of it, for a quarter more passes; at 1e-2
-three times as much, for a quarter less.
-"""
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,6 @@ class Method:
     residual_tolerance: float | None = None
     max_iterations: int = 1000
     closed: bool = True
-    finish: Finish = "iterate"
     diagnostics: bool = False
 
     def __post_init__(self) -> None:
@@ -81,15 +78,14 @@ class Method:
         rule = f"max_iterations is a whole number from 0 to {MOST_ITERATIONS}"
         require(is_whole(self.max_iterations, 0, MOST_ITERATIONS), rule, self.max_iterations)
         require_choice("closed", self.closed)
-        require_choice("finish", self.finish, get_args(Finish))
         require_choice("diagnostics", self.diagnostics)
         if not self.closed and self.degree != 3:
             raise OptionError("an open arc is cubic (degree=3)")
 
     @property
-    def stepwise(self) -> bool:
-        """Whether each polygon is iterated on its own, by the driver of any degree and variant."""
-        return self.degree != 3 or self.variant in (0, 4) or self.diagnostics
+    def readable(self) -> bool:
+        """Whether it takes the method in its plainest form (:mod:`.reference`): other degrees, diagnostics."""
+        return self.degree != 3 or self.diagnostics
 
     @property
     def peak_share(self) -> float:

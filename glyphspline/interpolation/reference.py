@@ -1,121 +1,28 @@
 """The method in its plainest form: NumPy, ``numpy.roots`` for the footpoints as in the paper, one vertex at a time.
 
-The compiled code has to agree with it. It is for reading the algorithms, and slow: some 0.3 ms a footpoint. Nothing in
-the algorithms or their proofs needs the plane: vertices may have d ≥ 2 coordinates here, and are then (n, d) instead of
-(n, 2).
+It is for reading the algorithms, and slow: some 0.3 ms a footpoint. The kernels have to agree with it. What they do not
+have is here alone: degrees other than 3, the matrices and the history of a run, and Algorithm 1. Nothing in the
+algorithms or their proofs needs the plane: vertices may have d ≥ 2 coordinates.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cache, partial, reduce
-from itertools import pairwise
-from typing import Any
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..curves.bezier import derivative_points
 from ..curves.bspline import Spline, full_knots
+from ..errors import PolygonError
 from ..types import FloatArray, IntArray
-from .driver import controls_beside_ends, diagnose, iterate
-from .intervals import BISECTIONS, END_MARGIN, Intervals, search_intervals
-from .method import PEAK_SHARE, SETTLED, TIE, TIE_DISTANCE, Fallback, Method, Parametrisation, Tangents
+from .intervals import Intervals, arc_intervals, search_intervals
+from .method import Method, Parametrisation, Tangents
 from .polygon import as_tangents, clean_polygon, closed_knots, lengths, vertex_centres, vertex_parameters
 from .result import Interpolation
-
-NEARLY_REAL = 0.05
-"""A zero whose imaginary part (in spans) is below this is polished, as is one that is so little outside the span.
-
-Rounding moves a zero of multiplicity m by some 1e-16 to the power 1/m: a fivefold one, the most there is, by 1e-3.
-"""
-
-
-def footpoint(spline: Spline, point: FloatArray, interval: FloatArray, centre: float) -> float:
-    """Parameter of the point of the curve nearest to ``point`` on an interval: the global minimum.
-
-    The candidates are the ends of the interval, the knots inside, and the zeros of the derivative of the
-    squared distance on every piece. A tie goes to the candidate nearest ``centre``.
-    """
-    low, high = interval
-    candidates = np.minimum(np.maximum([low, high, *_stationary(spline, point, low, high)], low), high)
-    distance = ((spline(candidates) - point) ** 2).sum(axis=1)
-    zero = (TIE_DISTANCE * np.ptp(spline.control_points, axis=0).max()) ** 2
-    tied = candidates[distance <= distance.min() * (1 + TIE) + zero]
-    return float(tied[np.argmin(np.abs(tied - centre))])
-
-
-def _stationary(spline: Spline, point: FloatArray, low: float, high: float) -> list[float]:
-    """Knots in [low, high], and the zeros of (C - p)·C' on the pieces that meet it.
-
-    Zeros that are almost real count as real: they may be a double zero that rounding has split.
-    """
-    u, T = spline.knots, spline.period
-    spans = len(u) - 1
-    first, last = _span_of(spline, low), _span_of(spline, high)
-    found: list[float] = []
-    for k in range(first, last + 1):
-        lap, piece = divmod(k, spans)
-        start, h = u[piece] + lap * T, u[piece + 1] - u[piece]
-        axes = (_power_basis(spline.degree) @ (spline._bezier[piece] - point)).T
-        powers = np.arange(spline.degree, 0, -1)
-        slope = reduce(np.add, [np.convolve(x, powers * x[:-1]) for x in axes])
-        zeros = np.roots(slope)
-        likely = (np.abs(zeros.imag) < NEARLY_REAL) & (np.abs(zeros.real - 0.5) < 0.5 + NEARLY_REAL)
-        polished = [_newton(axes.tolist(), t) for t in zeros.real[likely].tolist()]
-        found += [start, *(start + h * t for t in polished if 0 <= t <= 1)]
-    return found
-
-
-def _span_of(spline: Spline, t: float) -> int:
-    """Index of the span that holds t, counted on through the periods of a closed curve."""
-    u, T = spline.knots, spline.period
-    lap = int(np.floor((t - u[0]) / T)) if spline.closed else 0
-    within = int(np.searchsorted(u, t - lap * T, side="right")) - 1
-    return lap * (len(u) - 1) + min(max(within, 0), len(u) - 2)
-
-
-@cache
-def _power_basis(degree: int) -> FloatArray:
-    """From Bézier points to coefficients by descending powers of the local parameter, a matrix."""
-    points = np.eye(degree + 1)
-    rows = [points[0]]
-    factor = 1.0
-    for order in range(1, degree + 1):
-        points = derivative_points(points)
-        factor *= order
-        rows.append(points[0] / factor)
-    return np.array(rows[::-1])
-
-
-def _newton(axes: list[list[float]], t: float) -> float:
-    """Polish a zero of x x' + y y' + … that ``numpy.roots`` leaves a few digits short, until nothing improves.
-
-    It evaluates the coordinates, as the product's coefficients lose half of the digits where the curve is near its
-    vertex and slow. A start near a zero that is not polished would tie with it.
-    """
-    value, slope = _product(axes, t)
-    for _ in range(12):
-        if slope == 0:
-            break
-        better = t - value / slope
-        left, slope = _product(axes, better)
-        if not abs(left) < abs(value):
-            break
-        t, value = better, left
-    return t
-
-
-def _product(axes: list[list[float]], t: float) -> tuple[float, float]:
-    """x x' + y y' + … at t and its derivative, for polynomials (coefficients by descending powers)."""
-    value = slope = 0.0
-    for polynomial in axes:
-        a = b = c = 0.0
-        for coefficient in polynomial:
-            a, b, c = a * t + coefficient, b * t + a, c * t + b  # the value, its derivative, half of the second
-        value, slope = value + a * b, slope + b * b + 2 * a * c
-    return value, slope
+from .roots import footpoint
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,76 +81,68 @@ def prepare(
         if len(vertices):
             spread[[1, -2], [0, -1]] = natural
     windows = full_knots(u, degree + 2, closed)[degree + 2 + first[:, None] + np.arange(degree + 2)]
-    intervals = (search_intervals if closed else partial(_arc_intervals, u, spread))(
+    intervals = (search_intervals if closed else partial(arc_intervals, u, spread))(
         windows, centres[vertices], method.variant, method.margin, method.fallback
     )
     return Problem(p, vertices, u, degree, closed, centres, intervals, spread, fixed, merged)
 
 
-def _arc_intervals(
-    u: FloatArray, spread: FloatArray, windows: FloatArray, centres: FloatArray, variant: int, margin: float,
-    fallback: Fallback,
-) -> Intervals:  # fmt: skip
-    """:func:`search_intervals` for an arc, by W_i for the two vertices next to either end, as far as fixed functions
-    reach.
+def controls_beside_ends(q: FloatArray, h: FloatArray, tangents: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Weights and rests of the control points beside the ends: base + weight times the free one next to them.
 
-    W_i takes the place of B_i where its level is not below 1/2, and c is ``END_MARGIN`` at least for the first and the
-    last vertex, where W_i always rises above 5/8.
+    With a tangent τ that of the first end is fixed at q_0 + h_0/3 τ. A natural end (C'' = 0) keeps it on the line from
+    q_0 to the first free point, at h_0/(2 h_0 + h_1) of the way, as clamped knots have it.
     """
-    count, parts = len(windows), [Intervals(np.empty((0, 2)), 0, 0.0)]
-    basis = Spline.trusted(np.zeros((len(spread), 2)), u, 3, False).basis
-    alone = sorted({0, 1, 2, count - 2, count - 1, count} & set(range(count + 1)))
-    for i, stop in pairwise(alone):
-        part = search_intervals(windows[i:stop], centres[i:stop], variant, margin, fallback)
-        if min(i, count - 1 - i) < 2:
-
-            def dominance(t: FloatArray, i: int = i) -> FloatArray:
-                rows = basis(t) @ spread
-                found: FloatArray = rows[:, i] + (1 - rows.sum(axis=1)) / 2
-                return found
-
-            level = 0.5 + (max(margin, END_MARGIN) if i in (0, count - 1) else margin)
-            share = PEAK_SHARE if fallback == "peak" else 1.0
-            found = _level_interval(dominance, windows[i, 1:4], level, share) if variant in (2, 4) else None
-            if variant == 3:
-                part = replace(part, rate_bound=float(2 * (1 - dominance(centres[i:stop])[0])))
-            elif found is not None:
-                part = Intervals(found[None], 0, float(2 * (1 - dominance(found).min())))
-        parts.append(part)
-    bounds, fallbacks, rates = zip(*((part.bounds, part.fallbacks, part.rate_bound) for part in parts), strict=True)
-    return Intervals(np.concatenate(bounds), sum(fallbacks), max(rates))
+    natural, base = np.zeros(2), np.zeros((2, q.shape[1]))
+    if len(h) > 1:
+        natural = np.isnan(tangents).any(axis=1) * h[[0, -1]] / (2 * h[[0, -1]] + h[[1, -2]])
+    for end, (near, beyond, sign) in enumerate(((0, 1, 1.0), (-1, -2, -1.0))):
+        if not np.isnan(tangents[end]).any():
+            base[end] = q[near] + sign * h[near] / 3 * tangents[end]
+        elif len(q) == 2:
+            base[end] = q[near] + (q[beyond] - q[near]) / 3
+        else:
+            base[end] = (1 - natural[end]) * q[near]
+    return natural, base
 
 
-def _level_interval(f: Callable[[FloatArray], FloatArray], knots: FloatArray, level: float, share: float) -> Any:
-    """(2,) where W_i ≥ level, or ``share`` of its maximum if that is lower; None if that is below 1/2.
+History = list[tuple[FloatArray, FloatArray]]
+"""The control points of every iteration, and the footpoints on their curve."""
+
+Pass = Callable[[FloatArray], tuple[FloatArray, FloatArray, float]]
+"""From control points to footpoints, control points after the update, and the largest error before it."""
+
+
+class Run(NamedTuple):
+    """The end of an iteration: control points, their footpoints, the error of every pass, and the history if kept."""
+
+    controls: FloatArray
+    footpoints: FloatArray
+    residuals: list[float]
+    history: History
+
+
+def iterate(
+    one_pass: Pass, controls: FloatArray, limit: float, max_iterations: int, at_once: bool = False, keep: bool = False
+) -> Run:
+    """Make passes until the error is below ``limit``, is not finite, or ``max_iterations`` updates have been made.
 
     Args:
-        f: W_i, at least 1/2 on a single interval between these. knots: (3,) u_{i-1}, u_i, u_{i+1}.
+        at_once: as in Algorithm 3, where the pass that reaches the limit has already updated the control points.
+        keep: keep the control points and the footpoints of every pass.
     """
-    before, knot, after = knots
-    candidates = np.concatenate([_critical(f, before, knot), _critical(f, knot, after)])
-    values = f(candidates)
-    peak, highest = candidates[values.argmax()], values.max()
-    level = min(level, share * highest)
-    if highest <= 0.5 or level < 0.5:
-        return None
-    if highest <= level:
-        return np.array([peak, peak])
-    ends = []
-    for inside, outside in ((peak, before), (peak, after)):
-        for _ in range(BISECTIONS):
-            middle = (inside + outside) / 2
-            inside, outside = (middle, outside) if f(middle[None])[0] >= level else (inside, middle)
-        ends.append(inside)
-    return np.array(ends)
-
-
-def _critical(f: Callable[[FloatArray], FloatArray], start: float, stop: float) -> FloatArray:
-    """The ends of a span and the zeros inside of the derivative of f, a cubic there."""
-    x = np.arange(4) / 3
-    zeros = np.roots(np.polyder(np.polyfit(x, f(start + x * (stop - start)), 3)))
-    inside = zeros.real[(np.abs(zeros.imag) < 1e-9) & (zeros.real > 0) & (zeros.real < 1)]
-    return start + np.concatenate([[0.0], inside, [1.0]]) * (stop - start)
+    residuals: list[float] = []
+    history: History = []
+    while True:
+        footpoints, updated, error = one_pass(controls)
+        residuals.append(error)
+        if keep:
+            history.append((controls, footpoints))
+        if error < limit:
+            return Run(updated if at_once else controls, footpoints, residuals, history)
+        if len(residuals) > max_iterations or not np.isfinite(error):
+            return Run(controls, footpoints, residuals, history)
+        controls = updated
 
 
 def interpolate_reference(
@@ -257,41 +156,43 @@ def interpolate_reference(
 ) -> Interpolation:
     """Algorithms 2 and 3; the arguments and the result are those of :func:`glyphspline.interpolate`.
 
-    ``points`` may be (n, d), d ≥ 2. The spline of the result then has control points (n, d), and no curvature.
-
     ``disturb`` may change the free control points before each pass, to see how far rounding errors carry.
     """
     rule: Any = knots if isinstance(knots, str) else None
     method = Method(variant, knots=rule, **options)
-    problem = prepare(points, method, None if rule else knots, end_tangents)
+    return interpolate_by(method, points, None if rule else knots, end_tangents, disturb)
+
+
+def interpolate_by(
+    method: Method,
+    points: ArrayLike,
+    knots: ArrayLike | None = None,
+    end_tangents: Tangents | None = None,
+    disturb: Callable[[FloatArray], FloatArray] | None = None,
+) -> Interpolation:
+    """:func:`interpolate_reference` by a method; ``knots`` if that has no rule."""
+    problem = prepare(points, method, knots, end_tangents)
     tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
-    chords = np.diff(problem.centres) if len(problem.centres) > 1 else np.ones(1)
-    settled = SETTLED * float(chords.mean()) if method.finish == "solve" else 0.0
-    at_once = variant == 4
+    at_once = method.variant == 4
 
     def one_pass(free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
-        return (_sweep if at_once else _step)(problem, disturb(free) if disturb else free)
+        return (sweep if at_once else step)(problem, disturb(free) if disturb else free)
 
     first = problem.points[problem.vertices].copy()
-    run = iterate(one_pass, first, max(tolerance, settled), method.max_iterations, at_once, method.diagnostics)
-    free, t, residuals = run.controls, run.footpoints, run.residuals
-    if method.finish == "solve" and len(free):
-        spline, p = problem.spline(np.zeros_like(free)), problem.points[problem.vertices]
-        free = np.asarray(np.linalg.solve(problem.matrix(t), p - spline(t)), dtype=np.float64)
-        residuals.append(float(lengths(p - problem.spline(free)(t)).max()))
+    run = iterate(one_pass, first, tolerance, method.max_iterations, at_once, method.diagnostics)
     parameters, bounds = problem.centres.copy(), np.stack([problem.centres, problem.centres], axis=1)
-    parameters[problem.vertices], bounds[problem.vertices] = t, problem.intervals.bounds
+    parameters[problem.vertices], bounds[problem.vertices] = run.footpoints, problem.intervals.bounds
     observed: dict[str, Any] = {}
     if method.diagnostics:
         observed = diagnose(problem.matrix, run.history, at_once)
         observed["history"] = tuple((problem.spread @ free + problem.fixed, t) for free, t in run.history)
     return Interpolation(
-        spline=problem.spline(free),
+        spline=problem.spline(run.controls),
         parameters=parameters,
         intervals=bounds,
-        iterations=len(residuals) - 1,
-        residuals=np.array(residuals),
-        converged=bool(residuals[-1] < tolerance),
+        iterations=len(run.residuals) - 1,
+        residuals=np.array(run.residuals),
+        converged=run.residuals[-1] < tolerance,
         fallbacks=problem.intervals.fallbacks,
         rate_bound=problem.intervals.rate_bound,
         merged=problem.merged,
@@ -299,7 +200,31 @@ def interpolate_reference(
     )
 
 
-def _step(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+def interpolate_one_vertex(points: ArrayLike, k: int, method: Method, whole_curve: bool) -> Interpolation:
+    """Algorithm 1; see :func:`glyphspline.interpolate_vertex`."""
+    problem = prepare(points, method)
+    if not 0 <= k < len(problem.points):
+        raise PolygonError(f"there is no vertex {k} among {len(problem.points)}")
+    point, centre, T = problem.points[k], problem.centres[k], problem.knots[-1]
+    interval = centre + np.array([-0.5, 0.5]) * T if whole_curve else problem.intervals.bounds[k]
+    least = float(problem.spline(problem.points).basis(interval)[:, k].min())  # B_k has a single peak
+
+    def one_pass(controls: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+        spline = problem.spline(controls)
+        t = np.array([footpoint(spline, point, interval, centre)])
+        updated = controls.copy()
+        updated[k] += point - spline(t)[0]
+        return t, updated, float(lengths(updated[k] - controls[k]))
+
+    tolerance = method.tolerance_for(float(np.ptp(problem.points, axis=0).max()))
+    run = iterate(one_pass, problem.points, tolerance, method.max_iterations)
+    return Interpolation(
+        problem.spline(run.controls), run.footpoints, interval[None], len(run.residuals) - 1, np.array(run.residuals),
+        run.residuals[-1] < tolerance, 0, 1.0 if whole_curve else 1 - least, problem.merged,
+    )  # fmt: skip
+
+
+def step(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """One pass of Algorithm 2: footpoints of all vertices on one curve, then all updates at once."""
     spline = problem.spline(free)
     p = problem.points[problem.vertices]
@@ -308,7 +233,7 @@ def _step(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, f
     return t, free + e, float(lengths(e).max(initial=0.0))
 
 
-def _sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
+def sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, float]:
     """One sweep of Algorithm 3: each control point is updated before the next footpoint is computed."""
     free = free.copy()
     t = np.empty(len(free))
@@ -325,3 +250,31 @@ def _sweep(problem: Problem, free: FloatArray) -> tuple[FloatArray, FloatArray, 
 def _searches(problem: Problem) -> list[tuple[FloatArray, FloatArray, float]]:
     v = problem.vertices
     return list(zip(problem.points[v], problem.intervals.bounds, problem.centres[v], strict=True))
+
+
+def diagnose(matrix: Callable[[FloatArray], FloatArray], history: History, at_once: bool) -> dict[str, Any]:
+    """Error iteration matrices of a run: the largest row-sum norm, and the spectral radius of their product so far.
+
+    In Algorithm 2 the factor of a step is I - Bᵐ (the paper's equation 3). In Algorithm 3, with L the part of B
+    below the diagonal, the corrections of a sweep are (I + L)⁻¹ times the errors before it, so that the factor
+    from one sweep's corrections to the next one's is I - (I + L)⁻¹ B.
+
+    Args:
+        matrix: from (f,) footpoints to the (f, f) matrix B of the free control points.
+        at_once: whether the run is one of Algorithm 3.
+    """
+    factors = []
+    for _, t in history[:-1]:
+        B = matrix(t)
+        identity = np.eye(len(B))
+        factors.append(identity - (np.linalg.solve(identity + np.tril(B, -1), B) if at_once else B))
+    radii, product = [], np.eye(len(history[0][1]))
+    for factor in factors:
+        product = factor @ product
+        radii.append(float(np.abs(np.linalg.eigvals(product)).max(initial=0.0)))
+    norms = [float(np.abs(factor).sum(axis=1).max(initial=0.0)) for factor in factors]
+    return {
+        "history": tuple(history),
+        "rate_observed": max(norms, default=0.0),
+        "spectral_radii": np.array(radii),
+    }

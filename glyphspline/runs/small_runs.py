@@ -63,17 +63,10 @@ def converted(options: Options) -> Any:
 
 
 def interpolations() -> None:
-    """The interpolation of a polygon by itself, in all its kinds."""
-    from ..interpolation.api import interpolate, interpolate_many, interpolate_vertex
+    """The interpolation of a polygon by itself: one code for all variants, curves and dimensions."""
+    from ..interpolation.api import interpolate
 
     interpolate(SQUARE.points)
-    interpolate_many([SQUARE.points])
-    interpolate(SQUARE.points, closed=False)
-    interpolate(SQUARE.points, 4)
-    interpolate(SQUARE.points, degree=4)
-    interpolate(SQUARE.points, knots=np.arange(5.0))
-    interpolate_vertex(SQUARE.points, 0)
-    interpolate(np.eye(4))
 
 
 def drawings() -> None:

@@ -154,11 +154,16 @@ def through(contour: ContourResult, polygon: FloatArray, options: Options) -> Co
 
 
 def steps(result: GlyphResult) -> Iterator[tuple[int, list[Interpolation]]]:
-    """Numbers of updates, and after each number the closed curves of the glyph: each run is made once."""
+    """Numbers of updates, and after each number the closed curves of the glyph."""
     closed = [contour for contour in result.contours if is_smooth(contour)]
-    runs = [(contour.interpolations[0], recorded(contour.polygon, result.options)) for contour in closed]
-    for m in shown_steps(updates_of(result)):
-        yield m, [_after(m, arc, run) for arc, run in runs]
+    shown = shown_steps(updates_of(result))
+    arcs = [contour.interpolations[0] for contour in closed]
+    runs = [
+        recorded(contour.polygon, result.options, [m for m in shown if m < arc.iterations])
+        for contour, arc in zip(closed, arcs, strict=True)
+    ]
+    for m in shown:
+        yield m, [_after(m, arc, run) for arc, run in zip(arcs, runs, strict=True)]
 
 
 def updates_of(result: GlyphResult) -> int:
@@ -168,7 +173,7 @@ def updates_of(result: GlyphResult) -> int:
 
 def _after(updates: int, arc: Interpolation, run: History) -> Interpolation:
     """A closed curve after a number of updates: its own end if it needed no more."""
-    if updates >= min(arc.iterations, len(run)):
+    if updates not in run:
         return arc
     controls, parameters = run[updates]
     spline = replace(arc.spline, control_points=controls)

@@ -10,10 +10,10 @@ import numpy as np
 
 import glyphspline as gs
 from glyphspline.interpolation.api import interpolate_batch
-from glyphspline.interpolation.driver import interpolate_any_degree
 from glyphspline.interpolation.method import Method
-from glyphspline.interpolation.reference import footpoint, interpolate_reference, prepare
+from glyphspline.interpolation.reference import interpolate_reference, prepare
 from glyphspline.interpolation.result import BatchedInterpolation
+from glyphspline.interpolation.roots import footpoint
 from glyphspline.types import FloatArray, IntArray
 
 from .measure import Row, in_words, interleaved, ratio
@@ -49,7 +49,6 @@ def glyph_polygons(count: int) -> list[FloatArray]:
 
 Results = gs.Interpolation | list[gs.Interpolation]
 DIMENSIONS = (2, 4, 6, 18, 48, 154)
-DIMENSION_LIMITS = {18: (2, 1.4), 48: (3, 2.1)}
 LIMITS = {20: (5, 6), 90: (2.5, 3), 300: (1.5, 2), 1000: (1.0, 1.2)}
 
 
@@ -228,7 +227,7 @@ def growth() -> list[Row]:
 
 
 def dimensions() -> list[Row]:
-    """Time a footpoint of `interpolate_many` in R^d against the plane, and the same where each polygon goes alone."""
+    """Time a footpoint of `interpolate_many` in R^d against the plane."""
     found = []
     for n, count in ((20, 100), (90, 25)):
         cases: dict[str, Any] = {}
@@ -238,20 +237,12 @@ def dimensions() -> list[Row]:
             options: dict[str, Any] = {"residual_tolerance": 5 * SHARE * np.sqrt(d / 2), "threads": 1}
             results = gs.interpolate_many(polygons, **options)
             assert not any(r.uncertified for r in results)
-            counts[f"{d}"] = counts[f"{d} alone"] = sum((r.iterations + 1) * n for r in results)
+            counts[f"{d}"] = sum((r.iterations + 1) * n for r in results)
             cases[f"{d}"] = lambda p=polygons, o=options: gs.interpolate_many(p, **o)
-            cases[f"{d} alone"] = lambda p=polygons, o=options: [
-                interpolate_any_degree(q, Method(residual_tolerance=o["residual_tolerance"])) for q in p
-            ]
         times = interleaved(cases, rounds=7)
         each = {name: times[name] / counts[name] for name in cases}
         for d in DIMENSIONS[1:]:
-            must, aim = DIMENSION_LIMITS.get(d, (None, None))
-            one, all_at_once = each[f"{d} alone"], each[f"{d}"]
-            note = (
-                f"{in_words(all_at_once)}, {in_words(each['2'])}; by the passes of any degree {in_words(one)}, "
-                f"{one / each['2 alone']:.3g} times the plane's"
-            )
+            note = f"{in_words(each[f'{d}'])}, {in_words(each['2'])}"
             what = f"a footpoint in R^{d} against one in the plane, n = {n}"
-            found.append(Row(what, all_at_once / each["2"], must=must, aim=aim, more=False, note=note))
+            found.append(Row(what, each[f"{d}"] / each["2"], more=False, note=note))
     return found

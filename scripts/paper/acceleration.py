@@ -1,4 +1,4 @@
-"""Anderson acceleration beside plain iteration and the frozen solve: passes, times, how far limits lie apart."""
+"""Anderson acceleration beside plain iteration: passes, times, how far limits lie apart."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
-from glyphspline.interpolation.driver import Problem, interpolate_any_degree, iterate
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.polygon import as_tangents
+from glyphspline.interpolation.reference import iterate
 from glyphspline.types import FloatArray
 
 from ..benchmark.batch import least, seconds
 from .clicking import FONTS
 from .common import COLOURS, Run, random_polygons
+from .passes import Passes
 from .study import TOLERANCE
 
-Finish = Literal["iterate", "accelerate", "solve"]
+Finish = Literal["iterate", "accelerate"]
 FINISHES: tuple[Finish, ...] = get_args(Finish)
-SHADES = {f: COLOURS[f"variant {v}"] for f, v in zip(FINISHES, (2, 0, 1), strict=True)}
+SHADES = {f: COLOURS[f"variant {v}"] for f, v in zip(FINISHES, (2, 0), strict=True)}
 FACES = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf")
 STEP = 20.0
 REPEATS = 7
@@ -81,18 +82,18 @@ class Anderson:
 
 
 def accelerated(points: FloatArray, variant: int = 2, **options: Any) -> gs.Interpolation:
-    """The result of accelerated passes; other options are those of :func:`glyphspline.interpolate`."""
+    """The result of accelerated passes of variants 1 to 3; options are those of :func:`glyphspline.interpolate`."""
     end_tangents = as_tangents([options.pop("end_tangents", None)], points.shape[1])[0]
     method = Method(variant, **options)
-    problem = Problem.of(points, method, None, end_tangents)
-    anderson = Anderson(slice(problem.layout.first, problem.layout.first + len(problem.free)))
+    problem = Passes(points, method, None if method.closed else end_tangents)
+    anderson = Anderson(problem.free)
 
     def one_pass(controls: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         footpoints, updated, error = problem.one_pass(controls)
         done = error < problem.limit or not np.isfinite(error)
         return footpoints, updated if done else anderson.next(controls, updated, error), error
 
-    return problem.result(iterate(one_pass, problem.P, problem.limit, method.max_iterations, variant == 4))
+    return problem.result_of(iterate(one_pass, problem.start, problem.limit, method.max_iterations))
 
 
 def interpolated(
@@ -101,7 +102,7 @@ def interpolated(
     """Results for a list of polygons."""
     if finish == "accelerate":
         return [accelerated(p, variant, **options) for p in polygons]
-    return gs.interpolate_many(polygons, variant, finish=finish, **options)
+    return gs.interpolate_many(polygons, variant, **options)
 
 
 def acceleration(run: Run) -> None:
@@ -132,7 +133,7 @@ def acceleration(run: Run) -> None:
             if tolerance is None:
                 apart[face] = _apart(results)
         times[face] = _times(polygons, run)
-    slow = {v: _any_variant(groups[n], v) for v in ((1, 3, 4) if not run.quick else (3,))}
+    slow = {v: _any_variant(groups[n], v) for v in ((1, 3) if not run.quick else (3,))}
     measured = {
         "mean passes on random polygons": passes,
         "mean passes on contours": contours,
@@ -192,11 +193,16 @@ def _any_variant(polygons: list[FloatArray], variant: int) -> dict[str, float]:
     return found
 
 
+def _plain(points: FloatArray) -> gs.Interpolation:
+    problem = Passes(points, Method())
+    return problem.result_of(iterate(problem.one_pass, problem.start, problem.limit, 1000))
+
+
 def _times(polygons: list[FloatArray], run: Run) -> dict[str, float]:
-    """The least of several times by the driver in NumPy, taken in turns, as other work disturbs each."""
+    """The least of several times by passes called one by one, taken in turns, as other work disturbs each."""
     few = polygons[:TIMED]
     cases: dict[str, Callable[[], object]] = {
-        "iterate": lambda: [interpolate_any_degree(p, Method()) for p in few],
+        "iterate": lambda: [_plain(p) for p in few],
         "accelerate": lambda: [accelerated(p) for p in few],
     }
     best = least(run.size(REPEATS, 1), *map(seconds, cases.values()))

@@ -11,14 +11,13 @@ from matplotlib.figure import Figure
 from scipy.interpolate import BSpline
 
 import glyphspline as gs
-from glyphspline.curves.bspline import full_knots
-from glyphspline.interpolation.driver import Problem, iterate
-from glyphspline.interpolation.intervals import search_intervals
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.polygon import vertex_parameters
+from glyphspline.interpolation.reference import iterate
 from glyphspline.types import FloatArray
 
 from .common import COLOURS, GREY, INK, MARKERS, Run
+from .passes import Passes
 from .smooth_curves import ELLIPSE, SAMPLINGS, TREFOIL, Waves, distance, order, steps
 
 COUNTS = (8, 16, 32, 64, 128, 256, 512)
@@ -116,11 +115,9 @@ def greville_start(p: FloatArray) -> gs.Spline:
     before = np.roll(h, 1)
     by = ((h - before) / 3)[:, None]
     towards = np.where(by > 0, (np.roll(p, -1, axis=0) - p) / h[:, None], (p - np.roll(p, 1, axis=0)) / before[:, None])
-    windows = full_knots(u, 5, True)[3 + np.arange(len(p))[:, None] + np.arange(5)]
-    method, free = Method(2), np.arange(len(p))
-    scaled = Problem(p, u, u[:-1], free, search_intervals(windows, u[:-1], 2), method)
+    scaled = Passes(p, Method(2))
     first = (p + by * towards - scaled.origin) * scaled.unit
-    done = iterate(scaled.one_pass, first, TOLERANCE * scaled.unit, method.max_iterations)
+    done = iterate(scaled.one_pass, first, TOLERANCE * scaled.unit, scaled.method.max_iterations)
     return gs.Spline(scaled.points_of(done.controls), u)
 
 

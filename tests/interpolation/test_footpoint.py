@@ -12,7 +12,8 @@ from glyphspline.curves.bspline import Spline
 from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
 from glyphspline.interpolation.method import Method
-from glyphspline.interpolation.reference import footpoint, prepare
+from glyphspline.interpolation.reference import prepare
+from glyphspline.interpolation.roots import footpoint
 from scripts.adversarial_footpoints import BOUND, attack, attacks
 from tests.polygons import smooth, uniform
 

@@ -202,7 +202,6 @@ def test_bad_polygons_are_refused_by_name(points: Any, message: str) -> None:
         ({"residual_tolerance": float("nan")}, "residual_tolerance"),
         ({"max_iterations": -1}, "max_iterations"),
         ({"max_iterations": 2.5}, "max_iterations"),
-        ({"finish": "guess"}, "finish"),
         ({"closed": 1}, "closed"),
         ({"diagnostics": "yes"}, "diagnostics"),
         ({"end_tangents": ((1, 0), (1, 0))}, "end_tangents belong to an open arc"),
@@ -262,11 +261,10 @@ def test_a_result_is_a_plain_value() -> None:
         r.iterations = 3  # type: ignore[misc]
 
 
-@pytest.mark.parametrize("finish", ["iterate", "solve"])
 @pytest.mark.parametrize("degree", [3, 5])
-def test_results_have_their_vertices_without_duplicates(degree: int, finish: Any) -> None:
+def test_results_have_their_vertices_without_duplicates(degree: int) -> None:
     given = np.array([[0, 0], [4, 0], [4, 0], [5, 3], [2, 5]], dtype=np.float64)
-    many = gs.interpolate_many([given, given[::-1], [[0, 0]]], degree=degree, finish=finish, errors="return")
+    many = gs.interpolate_many([given, given[::-1], [[0, 0]]], degree=degree, errors="return")
     for found, points in zip(many, (given[[0, 1, 3, 4]], given[[4, 3, 2, 0]]), strict=False):
         assert isinstance(found, gs.Interpolation)
         np.testing.assert_array_equal(found.points, points)
@@ -294,15 +292,6 @@ def test_one_vertex_alone_converges_at_theorem_1s_rate() -> None:
     assert np.hypot(*(r.spline(r.parameters)[0] - p[3])) < 1e-6
     with pytest.raises(gs.PolygonError, match="no vertex 12"):
         gs.interpolate_vertex(p, 12)
-
-
-def test_solving_at_frozen_footpoints_interpolates_to_rounding() -> None:
-    p = random_polygon(20, 13)
-    solved, iterated = gs.interpolate(p, 2, finish="solve"), gs.interpolate(p, 2)
-    assert solved.converged
-    assert solved.max_error < 1e-13
-    assert solved.iterations < iterated.iterations
-    assert np.abs(solved.spline.control_points - iterated.spline.control_points).max() < 0.1
 
 
 def quarter_circle(m: int) -> FloatArray:

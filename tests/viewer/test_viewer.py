@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shlex
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -150,9 +151,9 @@ def test_steps_go_from_the_polygon_to_the_result(client: TestClient) -> None:
 def test_a_run_is_made_once_for_all_of_its_steps(variant: int, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[gs.Options] = []
 
-    def counted(polygon: FloatArray, options: gs.Options) -> History:
+    def counted(polygon: FloatArray, options: gs.Options, updates: Iterable[int]) -> History:
         made.append(options)
-        return recorded(polygon, options)
+        return recorded(polygon, options, updates)
 
     monkeypatch.setattr(conversion, "recorded", counted)
     glyph = gs.convert(gs.open_font(FONTS / "kouzan-gyosho.ttf").outline("O"), gs.Options(variant=variant, count=24))

@@ -1,6 +1,6 @@
 """The compiled kernels: numbers in, numbers out; no classes, no errors, no input checks but those on the polygon.
 
-``driver`` Algorithm 2 on many polygons · ``blocks`` vertices in memory · ``lemma2`` intervals · ``newton_simd``,
-``gram_simd`` footpoints on cubics in the plane and in space, many vertices at once · ``certificate`` those of them that
-take a full search · ``footpoint`` nearest points, certified · ``any_degree_pass`` a pass for every degree and variant.
+``driver`` polygon after polygon · ``lemma2`` intervals · ``passes`` one pass over the vertices · ``search`` those that
+it cannot certify at once · ``footpoint`` nearest points, certified. All of it runs as plain Python too, and gives the
+same bits.
 """

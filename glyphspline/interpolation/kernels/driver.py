@@ -1,207 +1,172 @@
-"""The compiled driver of Algorithm 2: many cubic polygons in R^d in one call, variants 1 to 3, closed or open.
-
-Short polygons are iterated in groups, side by side in one block (:mod:`.blocks`). The passes over a block are
-:mod:`.newton_simd` in the plane and :mod:`.gram_simd` in space. A pass reads control points from P and writes the next
-ones to N; then P and N change places. Results do not depend on the other polygons of a group. A polygon that is done is
-stored; its lanes go on until the group is done, at parameters that stay.
-"""
+"""The compiled driver: cubic polygons in R^d one after another in one call, in all variants, closed or open."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
 from ...arrays import grown
 from ...compiled import compiled, inlined
 from ...intrinsics import borrowed, keep_alive
-from ...types import FloatArray, IntArray
+from ...types import BoolArray, FloatArray, IntArray
 from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX
 from ..polygon import SMALLEST as SMALLEST_EXTENT
-from ..result import Found
-from .blocks import (
-    BAD, BLOCK, COUNT, DD, FALLBACKS, FINISHED, HALO, HIGH, INTERVALS, KNOT_UNIT, LANE, LANES, LARGEST, LEAST, LIMIT,
-    LOW, NATURAL, PAD, PAIR, PASSES, POLYGON, SCRATCH, SEARCHED, SLOTS, STRIDE, TABLE, UNCERTIFIED, UNIT, WIDTH,
-    Coordinates, Given, Group, X, fill_edges, lanes_used, place,
-)  # fmt: skip
-from .certificate import GIVEN_UP, flagged
-from .certificate import SEARCHED as MARK
-from .gram_simd import seek_space
-from .lemma2 import fill_intervals
-from .newton_simd import seek
+from .footpoint import WORK
+from .lemma2 import vertex_interval
+from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, guard_for, one_pass, set_weights
+from .search import settle
 
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 """Status codes. A refused polygon is checked again in Python to build the error message."""
 
-STATUS, KEPT, ITERATIONS, FALLEN_BACK, SEARCHES, GIVEN_UP_ON = range(6)
+STATUS, KEPT, ITERATIONS, FALLBACKS, SEARCHES, UNCERTIFIED = range(6)
 """Columns of ``Found.whole``."""
+
+PAD = 4
+"""Knot intervals and control points kept before the first vertex and behind the last one: around a closed curve again,
+or beyond the ends of an arc.
+"""
 
 
 @compiled
-def run(
-    k0: int, k1: int, of_given: tuple[Any, ...], of_found: tuple[Any, ...], memory: FloatArray
-) -> FloatArray:  # fmt: skip
-    """Interpolate polygons k0 to k1 - 1; returns their residuals end to end.
+def prepare(
+    k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray,
+    held: BoolArray, peak_shares: FloatArray, tolerances: FloatArray, closed: bool, variant: int, margin: float,
+    exponent: float, knots: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray, rates: FloatArray,
+) -> None:  # fmt: skip
+    """Merge the vertices of polygons k0 to k1 - 1, compute knots and search intervals.
 
     Args:
-        of_given, of_found: the values of :class:`Given` and of :class:`Found`: plain tuples, whose types Numba finds
-            in a fraction of the time.
-        memory: for the blocks of the largest polygon: ``BLOCK`` numbers for each, and three arrays of coordinates.
+        points, offsets: (N, d), (K + 1,) polygons end to end; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+        own_knots: () or all polygons' own parameters end to end, n + 1 each if closed, n if open.
+        tangents: (K, 2, d) end tangents of open arcs, NaN for natural ends; (0, 2, d) if closed.
+        held: (N,) whether a vertex of a closed polygon is held: its control point stays at it, and the curve need not
+            pass through it; () where none is.
+        peak_shares: (K,) of ``fallback="peak"``, 0 for "knot".
+        tolerances: (K,) residual tolerances; NaN is replaced by the one of ``RELATIVE_TOLERANCE``.
+        exponent: of the chord length in the knots; negative for own knots.
+        knots, bounds, kept, whole, rates: results, as :class:`..result.Found` has them; bounds relative to the knots.
     """
-    given, found = borrowed(Given(*of_given)), borrowed(Found(*of_found))
-    d, closed = given.points.shape[1], given.closed
-    size = (d + 1) // 2 * PAIR
-    count = memory.shape[0] // (BLOCK + 3 * size)
-    owned = Group(
-        size, memory[: count * BLOCK], np.zeros(SCRATCH * STRIDE + 2 * WIDTH), np.empty(2 * count * LANES + 8 * WIDTH),
-        np.empty((SLOTS, TABLE), dtype=np.int64), np.empty((SLOTS, NATURAL + 2)), np.zeros((4 * SLOTS, d)),
-    )  # fmt: skip
-    first, second, third = count * BLOCK, count * (BLOCK + size), count * (BLOCK + 2 * size)
-    at = borrowed(Coordinates(memory[first:second], memory[second:third], memory[third : third + count * size]))
-    group = borrowed(owned)
-    history, residuals, used = np.empty(64), np.empty(64), 0
-    slots, lane, interval = 0, 0, 0
+    most = 0
     for k in range(k0, k1):
-        n, unit, knot_unit = prepare(given, found, k)
-        if n == 0:
+        most = max(most, offsets[k + 1] - offsets[k])
+    own_room = np.zeros(most + 2 * PAD), np.zeros(2), np.zeros(4), np.zeros(4)
+    h, natural, before, after = borrowed(own_room)
+    for k in range(k0, k1):
+        first, last, shift = offsets[k], offsets[k + 1], k if closed else 0
+        q, own, row = points[first:last], kept[first:last], whole[k]
+        u, given = knots[first + shift : last + shift + closed], own_knots[first + shift : last + shift + closed]
+        row[STATUS], row[ITERATIONS], row[FALLBACKS], row[SEARCHES], row[UNCERTIFIED] = BAD_POLYGON, -1, 0, 0, 0
+        n, extent = merge(q, closed, own)
+        row[KEPT] = n
+        if n < 0:
             continue
-        if slots > 0 and lane + n > LANES:
-            history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
-            slots, lane, interval = 0, 0, 0
-        row, own, u = group.table[slots], group.numbers[slots], knots_of(given, found, k, n)
-        h, spans = group.h[interval:], u.shape[0] - 1
-        for i in range(spans):  # h[PAD + i] is the knot interval from u_i on, continued periodically, or by zeros
-            h[PAD + i] = (u[i + 1] - u[i]) * knot_unit
-        for i in range(PAD):  # one after another: fewer spans than PAD repeat more than once
-            h[PAD - 1 - i] = h[PAD + spans - 1 - i] if closed else 0.0
-        for i in range(PAD + 2):
-            h[PAD + spans + i] = h[PAD + i] if closed else 0.0
-        row[POLYGON], row[COUNT], row[LANE], row[INTERVALS], row[FINISHED] = k, n, lane, interval, 0
-        row[PASSES] = row[SEARCHED] = row[UNCERTIFIED] = 0
-        limit = max(given.tolerances[k], given.settled * u[n - 1] / (n - 1))
-        own[UNIT], own[KNOT_UNIT], own[LIMIT] = unit, knot_unit, limit * unit
-        slots, lane, interval = slots + 1, lane + n + 2 * HALO, interval + n + 2 * PAD
-    if slots > 0:
-        history, residuals, used = _iterate(given, found, group, at, slots, history, residuals, used)
-    keep_alive(owned)
+        if np.isnan(tolerances[k]):
+            tolerances[k] = RELATIVE_TOLERANCE * extent
+        if not set_knots(q, own, n, closed, exponent, given, u):
+            row[STATUS] = BAD_KNOTS
+            continue
+        row[STATUS] = OK
+        set_steps(u, n, closed, 1.0, h)
+        if not closed:
+            set_natural(tangents[k], n, h, natural)
+        least = 1.0
+        for i in range(n):
+            bounds[first + i, 0] = bounds[first + i, 1] = 0.0
+            if (closed or 0 < i < n - 1) and not (held.shape[0] > 0 and held[first + own[i]]):
+                low, high, value, missing = vertex_interval(
+                    h, PAD + i, i, n, closed, variant, margin, peak_shares[k], natural, before, after
+                )
+                bounds[first + i, 0], bounds[first + i, 1], least = low, high, min(least, value)
+                row[FALLBACKS] += 1 if missing else 0
+        rates[k] = 2.0 * (1.0 - least)
+    keep_alive(own_room)
+
+
+@compiled
+def iterate(
+    k0: int, k1: int, points: FloatArray, offsets: IntArray, tangents: FloatArray, held: BoolArray,
+    tolerances: FloatArray, closed: bool, variant: int, max_iterations: int, knots: FloatArray, controls: FloatArray,
+    parameters: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray,
+) -> FloatArray:  # fmt: skip
+    """Iterate polygons k0 to k1 - 1 that :func:`prepare` has prepared; returns their residuals end to end."""
+    d, most, residuals, used = points.shape[1], 0, np.empty(64), 0
+    for k in range(k0, k1):
+        most = max(most, offsets[k + 1] - offsets[k])
+    size, guard = most + 2 * PAD + WHOLE, guard_for(d)
+    rows = np.zeros(size), np.zeros((most + LANES - 1) // LANES * BLOCK), np.zeros(2), np.zeros(d), np.zeros(d * AXIS)
+    tables = np.zeros((d, size)), np.zeros((d, size)), np.zeros((d, size)), np.zeros((4, d)), np.zeros((4, d))
+    scratch = np.zeros(SCRATCH), np.zeros((min(d, 4), 4)), np.zeros(WORK)
+    h, blocks, natural, e, T = borrowed(rows)
+    p, P, N, ends, b = borrowed(tables)
+    S, c, work = borrowed(scratch)
+    for k in range(k0, k1):
+        first, last, shift, row, n = offsets[k], offsets[k + 1], k if closed else 0, whole[k], whole[k, KEPT]
+        if row[STATUS] != OK:
+            continue
+        q, own, u = points[first:last], kept[first:last], knots[first + shift : last + shift + closed]
+        unit, knot_unit = place(q, own, n, u, closed, h, p, P)
+        if not closed:
+            set_natural(tangents[k], n, h, natural)
+            set_ends(tangents[k], unit / knot_unit, n, h, p, natural, ends)
+        start, stop = (PAD, PAD + n) if closed else (PAD + 1, PAD + n - 1)
+        set_weights(h, start, stop, blocks)
+        set_bounds(bounds[first:last], held[first:last], own, n, knot_unit, h, start, blocks)
+        passes, limit, width = 0, tolerances[k] * unit, 1 if variant == 4 else n
+        while True:
+            fill_edges(P, n, closed, ends, natural)
+            largest, now = 0.0, P
+            if variant == 4:  # each vertex sees those before it moved
+                copy(P, N)
+                now = N
+            for i in range(start, stop, width):
+                part, behind = blocks[(i - start) // LANES * BLOCK + (i - start) % LANES :], min(i + width, stop)
+                squared, left = one_pass(now, N, p, part, S, T, i, behind, guard)
+                largest = max(largest, squared)
+                if left > 0 or variant == 0:
+                    squared, searched, uncertified = settle(
+                        now, N, p, h, part, i, behind, variant == 0, guard, b, c, e, work
+                    )
+                    largest = max(largest, squared)
+                    row[SEARCHES] += searched
+                    row[UNCERTIFIED] += uncertified
+                if variant == 4:
+                    fill_edges(N, n, closed, ends, natural)
+            error = np.sqrt(largest)
+            residuals = grown(residuals, used + 1)
+            residuals[used] = error / unit
+            used, passes, done = used + 1, passes + 1, error < limit
+            if done and variant == 4:  # the moves of the sweep stand
+                P, N = N, P
+            if done or not np.inf > error or passes > max_iterations:
+                break
+            P, N = N, P
+        row[ITERATIONS] = passes - 1
+        store(q, own, n, u, closed, 1.0 / unit, P, controls[first if closed else first + 2 * k :])
+        store_footpoints(u, n, 1.0 / knot_unit, start, blocks, parameters[first:last], bounds[first:last])
+    keep_alive((rows, tables, scratch))
     return residuals[:used]
 
 
 @compiled
-def _iterate(
-    given: Given, found: Found, group: Group, at: Coordinates, slots: int, history: FloatArray, residuals: FloatArray,
-    used: int,
-) -> tuple[FloatArray, FloatArray, int]:  # fmt: skip
-    """Iterate a group until all of its polygons are done, and store them.
-
-    Args:
-        history: room for errors; may be replaced by a larger array.
-        residuals: the errors of every pass go there, polygon after polygon, from ``used`` on.
-
-    Returns:
-        History, residuals, and how many of these are used now.
-    """
-    place(given, found, group, at, slots)
-    fill_intervals(given, found, group, slots)
-    table, numbers, left = group.table, group.numbers, slots
-    while left > 0:
-        at = Coordinates(at.N, at.Q, at.P)
-        _one_pass(given, found, group, at, slots)
-        for q in range(slots):
-            if table[q, FINISHED]:
-                continue
-            row, error = table[q], np.sqrt(numbers[q, LARGEST])
-            history = grown(history, (row[PASSES] + 1) * slots)
-            history[row[PASSES] * slots + q] = error / numbers[q, UNIT]
-            row[PASSES] += 1
-            if np.inf > error and not error < numbers[q, LIMIT] and row[PASSES] <= given.max_iterations:
-                continue
-            row[FINISHED] = 1
-            _store(given, found, group, at.P, q)
-            left -= 1
-    for q in range(slots):
-        count = table[q, PASSES]
-        residuals = grown(residuals, used + count)
-        for i in range(count):
-            residuals[used + i] = history[i * slots + q]
-        used += count
-    return history, residuals, used
-
-
-@compiled
-def _one_pass(given: Given, found: Found, group: Group, at: Coordinates, slots: int) -> None:
-    """Footpoints of all vertices; each polygon's largest squared error, inf if one is not finite, and its searches."""
-    S, numbers, d = group.scratch, group.numbers, given.points.shape[1]
-    count, size, open_end = -(-group.table[0, COUNT] // LANES), group.size, 0 if given.closed else 1
-    for q in range(slots):
-        numbers[q, LARGEST] = 0.0
-    fill_edges(given, group, at.P, slots)
-    for b in range(count):
-        block, here, stop = group.blocks[b * BLOCK : (b + 1) * BLOCK], b * size, (b + 1) * size
-        P, Q, N = at.P[here:stop], at.Q[here:stop], at.N[here:stop]
-        m = lanes_used(group, slots, b)
-        bad, wild = seek(block, P, Q, N, S, m) if d == 2 else seek_space(block, P, Q, N, S, d, m)
-        for q in range(slots if wild > 0 else 0):  # polygons with an error that is not finite are not searched
-            first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
-            for i in range(n):
-                if not np.inf > block[DD + np.uint64(first + i)]:
-                    numbers[q, LARGEST] = np.inf
-            if numbers[q, LARGEST] == np.inf:
-                for i in range(n):
-                    S[BAD + np.uint64(first + i)] = 0.0
-                group.table[q, UNCERTIFIED] += n
-        searched = flagged(block, P, Q, N, S, d, m) if bad > 0 else 0
-        for q in range(slots):
-            first, n = group.table[q, LANE] + HALO, min(LANES, group.table[q, COUNT] - b * LANES)
-            start = given.offsets[group.table[q, POLYGON]]
-            for i in range(n if given.held.shape[0] > 0 else 0):  # control points of held vertices stay at them
-                if given.held[start + found.kept[start + b * LANES + i]]:
-                    for axis in range(d):
-                        N[first + i + axis * STRIDE] = Q[first + i + axis * STRIDE]
-                    block[DD + np.uint64(first + i)] = 0.0
-            for i in range(n if searched > 0 else 0):
-                mark = S[BAD + np.uint64(first + i)]
-                group.table[q, SEARCHED] += mark >= MARK
-                group.table[q, UNCERTIFIED] += mark == GIVEN_UP
-            low = open_end if b == 0 else 0
-            high = n - open_end if b + 1 == count else n
-            for j in range(np.uint64(first + low), np.uint64(first + max(high, low))):
-                numbers[q, LARGEST] = max(numbers[q, LARGEST], block[DD + j])
-        if count > 1 and numbers[0, LARGEST] == np.inf:
-            return
-
-
-@compiled
-def _store(given: Given, found: Found, group: Group, P: FloatArray, q: int) -> None:
-    """Results of polygon q in the caller's units; its parameters are held from here on.
-
-    Units are powers of two: multiplying rounds no more than dividing.
-    """
-    row, numbers, d = group.table[q], group.numbers[q], given.points.shape[1]
-    k, n = row[POLYGON], row[COUNT]
-    start, first = given.offsets[k], given.offsets[k] if given.closed else given.offsets[k] + 2 * k + 1
-    kept, points, u = found.kept[start:], given.points[start:], knots_of(given, found, k, n)
-    size, lane0, unit, length = group.size, row[LANE] + HALO, 1.0 / numbers[UNIT], 1.0 / numbers[KNOT_UNIT]
-    for i in range(n):
-        block, lane = group.blocks[i // LANES * BLOCK :], np.uint64(lane0 + i % LANES)
-        for axis in range(d):
-            value = P[i // LANES * size + lane0 + i % LANES + axis * STRIDE]
-            found.controls[first + i, axis] = value * unit + points[kept[0], axis]
-        found.parameters[start + i] = u[i] + block[X + lane] * length
-        found.bounds[start + i, 0] = u[i] + block[LOW + lane] * length
-        found.bounds[start + i, 1] = u[i] + block[HIGH + lane] * length
-        block[LOW + lane] = block[HIGH + lane] = block[X + lane]
-    if not given.closed:
-        for axis in range(d):
-            found.controls[first - 1, axis] = points[kept[0], axis]
-            found.controls[first + n, axis] = points[kept[n - 1], axis]
-    out = found.whole[k]
-    out[STATUS], out[ITERATIONS], out[FALLEN_BACK] = OK, row[PASSES] - 1, row[FALLBACKS]
-    out[SEARCHES], out[GIVEN_UP_ON] = row[SEARCHED], row[UNCERTIFIED]
-    found.rates[k] = 2.0 * (1.0 - numbers[LEAST])
+def set_knots(
+    q: FloatArray, kept: IntArray, n: int, closed: bool, exponent: float, given: FloatArray, u: FloatArray
+) -> bool:
+    """Write the knots of a polygon by the rules of ``polygon.py``; whether they are finite and increase."""
+    u[0] = 0.0
+    for i in range(1, n + 1 if closed else n):
+        if exponent < 0.0:
+            value = given[kept[i] if i < n else given.shape[0] - 1] - given[kept[0]]
+        else:
+            chord = 1.0 if exponent == 0.0 else distance(q, kept[i - 1], kept[i if i < n else 0])
+            value = u[i - 1] + (np.sqrt(chord) if exponent == 0.5 else chord)
+        if not np.inf > value or not value > u[i - 1]:
+            return False
+        u[i] = value
+    return True
 
 
 @inlined
@@ -214,27 +179,17 @@ def distance(p: FloatArray, i: int, j: int) -> float:
 
 
 @compiled
-def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float]:
+def merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float]:
     """Write the indices of the vertices that are kept; returns their number, -1 for a bad polygon, and the extent."""
-    n = points.shape[0]
-    if n == 0:
-        return -1, 0.0
-    x0 = x1 = points[0, 0]
-    y0 = y1 = points[0, 1]
-    for i in range(n):
-        x, y = points[i, 0], points[i, 1]
-        if not (np.isfinite(x) and np.isfinite(y)):
-            return -1, 0.0
-        x0, x1, y0, y1 = min(x0, x), max(x1, x), min(y0, y), max(y1, y)
-    extent = max(x1 - x0, y1 - y0)
-    for axis in range(2, points.shape[1]):
-        x0 = x1 = points[0, axis]
+    n, extent = points.shape[0], 0.0
+    for axis in range(points.shape[1]):
+        low, high = np.inf, -np.inf
         for i in range(n):
             if not np.isfinite(points[i, axis]):
                 return -1, 0.0
-            x0, x1 = min(x0, points[i, axis]), max(x1, points[i, axis])
-        extent = max(extent, x1 - x0)
-    if not SMALLEST_EXTENT <= extent <= LARGEST_EXTENT:
+            low, high = min(low, points[i, axis]), max(high, points[i, axis])
+        extent = max(extent, high - low)
+    if n == 0 or not SMALLEST_EXTENT <= extent <= LARGEST_EXTENT:
         return -1, extent
     apart = SAME_VERTEX * extent
     count, last = 1, 0
@@ -258,41 +213,138 @@ def _merge(points: FloatArray, closed: bool, kept: IntArray) -> tuple[int, float
     return -1, extent
 
 
-@inlined
-def knots_of(given: Given, found: Found, k: int, n: int) -> FloatArray:
-    """The knots of polygon k."""
-    first = given.offsets[k] + (k if given.closed else 0)
-    return found.knots[first : first + n + (1 if given.closed else 0)]
+@compiled
+def set_steps(u: FloatArray, n: int, closed: bool, unit: float, h: FloatArray) -> None:
+    """Write the knot intervals of n vertices, with those before and behind them: h[PAD + i] is the one after u_i."""
+    spans = n if closed else n - 1
+    for i in range(spans):
+        h[PAD + i] = (u[i + 1] - u[i]) * unit
+    for i in range(PAD):  # one after another: fewer spans than PAD repeat more than once
+        h[PAD - 1 - i] = h[PAD + spans - 1 - i] if closed else 0.0
+    for i in range(n + PAD - spans):
+        h[PAD + spans + i] = h[PAD + i] if closed else 0.0
 
 
 @compiled
-def prepare(given: Given, found: Found, k: int) -> tuple[int, float, float]:
-    """Merge vertices of polygon k and compute its knots, by the rules of ``polygon.py``.
+def set_natural(tangents: FloatArray, n: int, h: FloatArray, natural: FloatArray) -> None:
+    """Write the weights (2,) of the first and the last free control point of an arc in those beside its ends.
 
-    Returns the number kept, 0 if refused, and two scales, of lengths and of parameters: powers of two that bring extent
-    and mean knot interval near 1.
+    With them the curve has no curvature there; they are 0 at ends with a tangent (2, d), which is not NaN.
     """
-    start, stop, closed = given.offsets[k], given.offsets[k + 1], given.closed
-    points, kept = given.points[start:stop], found.kept[start:stop]
-    row = found.whole[k]
-    row[STATUS], row[ITERATIONS], row[FALLEN_BACK], row[SEARCHES], row[GIVEN_UP_ON] = BAD_POLYGON, -1, 0, 0, 0
-    n, extent = _merge(points, closed, kept)
-    row[KEPT] = n
-    if n < 0:
-        return 0, 1.0, 1.0
-    if np.isnan(given.tolerances[k]):
-        given.tolerances[k] = RELATIVE_TOLERANCE * extent
-    u = knots_of(given, found, k, n)
-    own = given.knots[start + (k if closed else 0) : stop + (k + 1 if closed else 0)]  # nothing, if there is a rule
-    u[0] = 0.0
-    for i in range(1, n + 1 if closed else n):
-        if given.exponent < 0.0:
-            value = own[kept[i] if i < n else own.shape[0] - 1] - own[kept[0]]
-        else:
-            chord = 1.0 if given.exponent == 0.0 else distance(points, kept[i - 1], kept[i if i < n else 0])
-            value = u[i - 1] + (np.sqrt(chord) if given.exponent == 0.5 else chord)
-        if not np.inf > value or not value > u[i - 1]:
-            row[STATUS] = BAD_KNOTS
-            return 0, 1.0, 1.0
-        u[i] = value
-    return n, math.ldexp(1.0, 1 - math.frexp(extent)[1]), math.ldexp(1.0, 1 - math.frexp(u[-1] / n)[1])
+    for end in range(2):
+        near, beyond = (PAD, PAD + 1) if end == 0 else (PAD + n - 2, PAD + n - 3)
+        natural[end] = h[near] / (2.0 * h[near] + h[beyond]) if np.isnan(tangents[end, 0]) and n > 2 else 0.0
+
+
+@compiled
+def unit_of(size: float) -> float:
+    """The power of two that brings a size near 1."""
+    return math.ldexp(1.0, 1 - math.frexp(size)[1])
+
+
+@compiled
+def place(
+    q: FloatArray, kept: IntArray, n: int, u: FloatArray, closed: bool, h: FloatArray, p: FloatArray, P: FloatArray
+) -> tuple[float, float]:
+    """Write knot intervals, vertices and first control points in units near 1, the first vertex the origin.
+
+    Returns the units of lengths and of parameters: powers of two.
+    """
+    unit, extent, knot_unit = 1.0, 0.0, unit_of(u[n if closed else n - 1] / n)
+    set_steps(u, n, closed, knot_unit, h)
+    for axis in range(q.shape[1]):
+        low, high = q[kept[0], axis], q[kept[0], axis]
+        for i in range(n):
+            low, high = min(low, q[kept[i], axis]), max(high, q[kept[i], axis])
+        extent = max(extent, high - low)
+    unit = unit_of(extent)
+    for axis in range(q.shape[1]):
+        for i in range(n):
+            p[axis, PAD + i] = P[axis, PAD + i] = (q[kept[i], axis] - q[kept[0], axis]) * unit
+    return unit, knot_unit
+
+
+@compiled
+def set_ends(
+    tangents: FloatArray, scale: float, n: int, h: FloatArray, p: FloatArray, natural: FloatArray, ends: FloatArray
+) -> None:
+    """Write the control points at the ends of an arc, rows 2 and 3 of (4, d), and what is fixed of those beside them.
+
+    Args:
+        tangents: (2, d), NaN for a natural end; scale: of derivatives. natural: see :func:`set_natural`.
+    """
+    for end in range(2):
+        at, other, near, sign = (0, 1, 0, 1.0) if end == 0 else (n - 1, n - 2, n - 2, -1.0)
+        for axis in range(p.shape[0]):
+            here, tau = p[axis, PAD + at], tangents[end, axis] * scale
+            if not np.isnan(tau):
+                ends[end, axis] = here + sign * h[PAD + near] / 3.0 * tau
+            elif n == 2:
+                ends[end, axis] = here + (p[axis, PAD + other] - here) / 3.0
+            else:
+                ends[end, axis] = (1.0 - natural[end]) * here
+            ends[2 + end, axis] = here
+
+
+@compiled
+def set_bounds(
+    bounds: FloatArray, held: BoolArray, kept: IntArray, n: int, unit: float, h: FloatArray, start: int,
+    blocks: FloatArray,
+) -> None:  # fmt: skip
+    """Write intervals to the blocks, their inner spans if they are wider, and which vertices are held."""
+    first = start - PAD
+    for i in range(first, n - first):
+        at = (i - first) // LANES * BLOCK + (i - first) % LANES
+        low, high = bounds[i, 0] * unit, bounds[i, 1] * unit
+        blocks[LOW + at], blocks[HIGH + at] = max(low, -h[PAD + i - 1]), min(high, h[PAD + i])
+        if held.shape[0] > 0 and held[kept[i]]:
+            blocks[FREE + at] = 0.0
+
+
+@compiled
+def fill_edges(P: FloatArray, n: int, closed: bool, ends: FloatArray, natural: FloatArray) -> None:
+    """Write the control points before the first vertex and behind the last one, and those of the ends of an arc."""
+    for axis in range(P.shape[0]):
+        x = P[axis]
+        for k in range(PAD if closed else 0):
+            x[PAD - 1 - k] = x[PAD + (n - 1 - k) % n]
+            x[PAD + n + k] = x[PAD + k % n]
+        if not closed:
+            x[PAD] = ends[0, axis] + natural[0] * x[PAD + 1]
+            x[PAD + n - 1] = ends[1, axis] + natural[1] * x[PAD + n - 2]
+            x[PAD - 1], x[PAD + n] = ends[2, axis], ends[3, axis]
+
+
+@compiled
+def copy(P: FloatArray, N: FloatArray) -> None:
+    """Copy control points."""
+    for axis in range(P.shape[0]):
+        for i in range(P.shape[1]):
+            N[axis, i] = P[axis, i]
+
+
+@compiled
+def store(
+    q: FloatArray, kept: IntArray, n: int, u: FloatArray, closed: bool, unit: float, P: FloatArray, controls: FloatArray
+) -> None:
+    """Write control points in the caller's units: powers of two, so that multiplying rounds no more than dividing."""
+    shift = 0 if closed else 1
+    for axis in range(q.shape[1]):
+        origin = q[kept[0], axis]
+        for i in range(n):
+            controls[shift + i, axis] = P[axis, PAD + i] * unit + origin
+        if not closed:
+            controls[0, axis], controls[n + 1, axis] = origin, q[kept[n - 1], axis]
+
+
+@compiled
+def store_footpoints(
+    u: FloatArray, n: int, unit: float, start: int, blocks: FloatArray, parameters: FloatArray, bounds: FloatArray
+) -> None:
+    """Write footpoints and intervals in the caller's units, no longer relative to the knots."""
+    first = start - PAD
+    for i in range(n):
+        x = 0.0
+        if first <= i < n - first:
+            x = blocks[X + (i - first) // LANES * BLOCK + (i - first) % LANES]
+        parameters[i], bounds[i, 0], bounds[i, 1] = u[i] + x * unit, u[i] + bounds[i, 0], u[i] + bounds[i, 1]
