@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import put
 from ...compiled import compiled
 from ...curves.cubics import bernstein, jet, length_table, turns
 from ...outlines.segments import farthest_joint, is_backward, lasting
@@ -65,15 +66,15 @@ def canonical_contours(given: FloatArray, begins: IntArray) -> CanonicalContours
         for v in range(K):
             own = np.abs(turns(chain[v], 0.0))
             for j in range(m):
-                cubics[(at + j) * K + v] = chain[v, j]
+                put(chain[v, j], cubics[(at + j) * K + v])
                 angles[at + j] = max(angles[at + j], own[j])
             own = length_table(chain[v], WEIGHTS)
             if K == 1:
-                table[:] = own
+                put(own, table)
             else:
                 for i in range(m * TABLE):
-                    square = (own[i + 1] - own[i]) ** 2
-                    table[i + 1] = square if v == 0 else table[i + 1] + square
+                    step = own[i + 1] - own[i]
+                    table[i + 1] = step * step if v == 0 else table[i + 1] + step * step
         if K > 1:
             table[0] = 0.0
             for i in range(m * TABLE):

@@ -213,7 +213,7 @@ def _newton(moves: Moves, at: Sampled, weight: float, flat: float, near: float, 
             own, unit = at.rows[count], 1.0 / at.rows[count, 1]
             z = own[0] * unit
             inside = 1 / (1 - z * z)
-            change, w = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit) ** 2
+            change, w = 2 * weight * z * inside * unit, 2 * weight * (1 + z * z) * (inside * unit * (inside * unit))
             _add_square(own[2:], change, w, slope, block)
             count += 1
         for a in range(4):

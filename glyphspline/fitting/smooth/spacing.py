@@ -74,7 +74,7 @@ def first_field(
                 if not straight:
                     _, _, dx, dy, bx, by = jet(own, j, k / TABLE)
                     speed = np.sqrt(dx * dx + dy * dy)
-                    kappa[k] = (dx * by - dy * bx) / speed**3 if speed > 0 else 0.0
+                    kappa[k] = (dx * by - dy * bx) / (speed * speed * speed) if speed > 0 else 0.0
             for k in range(0 if straight else TABLE + 1):
                 c = min(max(k, 1), TABLE - 1)
                 before, after = s[c] - s[c - 1], s[c + 1] - s[c]
@@ -83,7 +83,7 @@ def first_field(
                     slope = (kappa[c + 1] - kappa[c]) / after - (kappa[c] - kappa[c - 1]) / before
                     change = 2 * abs(slope) / (before + after)
                 bend = abs(kappa[k])
-                h = (near / (AT_CURVATURE * (change + bend**3) + 1e-300)) ** 0.25
+                h = (near / (AT_CURVATURE * (change + bend * bend * bend) + 1e-300)) ** 0.25
                 if bend > 0:  # a chord turns by no more radians than this, unless it is as short as the tolerance
                     h = min(h, 2.5 / bend)
                 at = j * TABLE

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arrays import ascending, grown
+from ...arrays import ascending, grown, put
 from ...compiled import compiled
 from ...curves.cubics import extent
 from ...curves.nearest import near_places
@@ -67,7 +67,7 @@ def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
     """An array whose first ``count`` values are in use, or a larger one, with more after these."""
     stop = count + len(part)
     values = grown(values, stop)
-    values[count:stop] = part
+    put(part, values[count:stop])
     return values
 
 
@@ -78,7 +78,7 @@ def polygons(contours: CanonicalContours, which: IntArray, places: FloatArray, o
     points = np.empty((len(places), 2 * K))
     for i in range(len(which)):
         a, b = offsets[i], offsets[i + 1]
-        points[a:b] = points_at(chain_of(contours, which[i]), K, places[a:b])
+        put(points_at(chain_of(contours, which[i]), K, places[a:b]), points[a:b])
     return points
 
 
@@ -264,7 +264,8 @@ def sparse(
             along = min(max(product / square, 0.0), 1.0) if square > 0 else 0.0
             for axis in range(points.shape[1]):
                 b = points[i, axis] - points[i - 1, axis]
-                height += (b - along * (points[k, axis] - points[i - 1, axis])) ** 2
+                off = b - along * (points[k, axis] - points[i - 1, axis])
+                height += off * off
             expected[i] = max(expected[i], np.sqrt(height))
     order, left = ascending(expected), n
     for k in range(n):
