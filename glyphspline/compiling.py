@@ -18,7 +18,8 @@ import numba
 from numba import njit, types
 from numba.core import caching
 from numba.core.ccallback import CFunc
-from numba.core.compiler import CompileResult
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler, CompileResult
 from numba.core.registry import cpu_target
 from numba.core.runtime import nrt
 from numba.core.serialize import dumps
@@ -73,8 +74,40 @@ def dispatcher(function: Callable[..., Any], role: str, **options: bool) -> Any:
     """Numba's dispatcher for a function and its kept code. It compiles only while :meth:`.Kept.compiling` is open."""
     jit: Any = njit
     made = jit(**OPTIONS, **options)(function)
+    if role == "inner":
+        made._compiler.pipeline_class = _Inner
     made._cache = _Files(function, role)
     return made
+
+
+class _Inner(Compiler):  # type: ignore[misc, unused-ignore]
+    """How functions for compiled callers are compiled."""
+
+    def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
+        super().__init__(typing, target, _Linked(target.codegen(), "linked"), *rest)
+
+
+class _Linked(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
+    """Code that is linked into that of its callers, and only there is optimised and made machine code.
+
+    As it is nowhere called by itself, all that would be for nothing; and once more in the next caller above.
+    """
+
+    def __init__(self, codegen: Any, name: str) -> None:
+        super().__init__(codegen, name)
+        self.enable_object_caching()
+
+    def _optimize_final_module(self) -> None:
+        """Set the code aside for the callers, and make the rest of what is left: the places of environments."""
+        self._finalize_dynamic_globals()
+        whole = self._final_module
+        places = [str(own) for own in whole.global_variables if own.name.startswith("_ZN08NumbaEnv")]
+        for one in whole.functions:
+            if not one.is_declaration and one.linkage == llvm.Linkage.external:
+                one.linkage = "linkonce_odr"
+        self._shared_module = whole
+        self._final_module = llvm.parse_assembly("\n".join(places))
+        self._final_module.name = whole.name
 
 
 def callback_of(function: Callable[..., Any], signature: str) -> Any:

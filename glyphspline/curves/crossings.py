@@ -18,11 +18,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import ascending, grown
+from ..arrays import ascending, grown, put
 from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray, IntArray
 from .contacts import all_crossings
-from .cubics import extent, split
+from .cubics import extent, split, square
 
 FLAT = 1e-9
 """Share of a glyph's extent by which the chords that are compared may differ from the curves."""
@@ -122,7 +122,8 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
             if low[j] > high[i] or high[j] < low[i]:
                 continue
             s, t = min(i, j), max(i, j)  # the order of the contours
-            A[0], B[0] = cubics[piece[s]], cubics[piece[t]]
+            put(cubics[piece[s]], A[0])
+            put(cubics[piece[t]], B[0])
             marks[0, 0], marks[0, 1] = 0, 0
             marks[0, 2] = (
                 AFTER * (after[s] == t) + BEFORE * (after[t] == s) if s != t else SELF + AFTER * (after[s] == s)
@@ -135,7 +136,7 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                 steps += 1
                 if coarse >= 0 and top < floor:  # all finer pairs are done: they take the place of the coarse one
                     if count - coarse <= MOST_FINER + 1 or np.isnan(found[coarse + 1 : count, 4]).any():
-                        found[coarse : count - 1] = found[coarse + 1 : count].copy()
+                        put(found[coarse + 1 : count], found[coarse : count - 1])
                         count -= 1
                     else:
                         count = coarse + 1
@@ -247,9 +248,11 @@ def legs(cubic: FloatArray) -> float:
 def halve(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArray, top: int, which: int) -> int:
     """Replace the pair at the top of the stack by two, with the halves of A (``which`` 0) or B (1)."""
     one, other = (A, B) if which == 0 else (B, A)
-    other[top + 1] = other[top]
+    put(other[top], other[top + 1])
     split(one[top], 0.5, one[top + 1])  # the first half to the top, the second one below
-    marks[top + 1], begins[top + 1] = marks[top], begins[top]
+    for k in range(3):
+        marks[top + 1, k] = marks[top, k]
+    begins[top + 1, 0], begins[top + 1, 1] = begins[top, 0], begins[top, 1]
     marks[top, which] += 1
     marks[top + 1, which] += 1
     begins[top, which] += 0.5 ** marks[top, which]
@@ -265,7 +268,8 @@ def halve_itself(A: FloatArray, B: FloatArray, marks: IntArray, begins: FloatArr
     split(A[top], 0.5, A[top + 1])
     level, begin = marks[top, 0] + 1, begins[top, 0]
     middle = begin + 0.5**level
-    A[top + 2], B[top + 2] = A[top + 1], A[top]
+    put(A[top + 1], A[top + 2])
+    put(A[top], B[top + 2])
     for k in range(3):
         marks[top + k, 0], marks[top + k, 1] = level, level
         marks[top + k, 2] = SELF if k < 2 else AFTER + BEFORE * (marks[top, 2] & AFTER > 0)
@@ -351,12 +355,12 @@ def meeting(A: FloatArray, B: FloatArray, touch: float) -> tuple[float, float, f
         if k < 2:  # an end of B on A
             px, py = (cx, cy) if k == 0 else (dx, dy)
             along = min(max(((px - ax) * ux + (py - ay) * uy) / u, 0.0), 1.0)
-            near = (ax + along * ux - px) ** 2 + (ay + along * uy - py) ** 2
+            near = square(ax + along * ux - px) + square(ay + along * uy - py)
             one, other = along, float(k)
         else:
             px, py = (ax, ay) if k == 2 else (bx, by)
             along = min(max(((px - cx) * vx + (py - cy) * vy) / v, 0.0), 1.0)
-            near = (cx + along * vx - px) ** 2 + (cy + along * vy - py) ** 2
+            near = square(cx + along * vx - px) + square(cy + along * vy - py)
             one, other = k - 2.0, along
         if near <= touch * touch:
             if one < x:

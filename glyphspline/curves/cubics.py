@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..types import FloatArray
 
 CONVEX = 0.2
@@ -22,6 +22,12 @@ CLOSE = 1e-6
 """A Newton step shorter than this is the last: the next one would move by its square."""
 
 ONE = np.uint64(1)
+
+
+@inlined
+def square(x: float) -> float:
+    """The product that compiled code makes of ``x ** 2``, and Python with an error in one of a thousand."""
+    return x * x
 
 
 @compiled
@@ -191,7 +197,7 @@ def length_table(cubics: FloatArray, weights: FloatArray) -> FloatArray:
             xs[i] = weights[0, i] * ax + weights[1, i] * bx + weights[2, i] * cx + weights[3, i] * dx
             ys[i] = weights[0, i] * ay + weights[1, i] * by + weights[2, i] * cy + weights[3, i] * dy
         for i in range(np.uint64(steps)):
-            chords[i] = np.sqrt((xs[i + ONE] - xs[i]) ** 2 + (ys[i + ONE] - ys[i]) ** 2)
+            chords[i] = np.sqrt(square(xs[i + ONE] - xs[i]) + square(ys[i + ONE] - ys[i]))
         for i in range(np.uint64(steps)):
             total += chords[i]
             table[np.uint64(j * steps + 1) + i] = total

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray
-from .cubics import CLOSE, STEPS, jet, nearest, newton_step
+from .cubics import CLOSE, STEPS, jet, nearest, newton_step, square
 
 COARSE = 8
 """Intervals a segment whose ends are compared for a first guess of the nearest point."""
@@ -33,8 +33,8 @@ def nearest_together(
         slope = speed = bend = 0.0
         for v in range(V):
             px, py, dx, dy, ax, ay = jet(chain, s * V + v, at)
-            x, y, square = px - points[p * V + v, k, 0], py - points[p * V + v, k, 1], dx * dx + dy * dy
-            slope, speed, bend = slope + x * dx + y * dy, speed + square, bend + square + x * ax + y * ay
+            x, y, own = px - points[p * V + v, k, 0], py - points[p * V + v, k, 1], dx * dx + dy * dy
+            slope, speed, bend = slope + x * dx + y * dy, speed + own, bend + own + x * ax + y * ay
         if speed <= 0.0:
             break
         before, at = at, newton_step(at, slope, speed, bend, low, high)
@@ -49,7 +49,7 @@ def square_to(V: int, chain: FloatArray, s: int, z: float, points: FloatArray, p
     total = 0.0
     for v in range(V):
         px, py, _, _, _, _ = jet(chain, s * V + v, z)
-        total += (px - points[p * V + v, k, 0]) ** 2 + (py - points[p * V + v, k, 1]) ** 2
+        total += square(px - points[p * V + v, k, 0]) + square(py - points[p * V + v, k, 1])
     return total
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import ascending
 from ..compiled import compiled, inlined
 from ..types import FloatArray, IntArray
-from .cubics import jet
+from .cubics import jet, square
 
 STEPS = 12
 """Chords a cubic; a straight one takes a single chord."""
@@ -69,10 +69,10 @@ def outside(hull: FloatArray, x: float, y: float) -> float:
     for k in range(n):
         ax, ay = hull[k - 1, 0], hull[k - 1, 1]
         dx, dy = hull[k, 0] - ax, hull[k, 1] - ay
-        square = dx * dx + dy * dy
-        along = ((x - ax) * dx + (y - ay) * dy) / square if square > 0 else 0.0
+        whole = dx * dx + dy * dy
+        along = ((x - ax) * dx + (y - ay) * dy) / whole if whole > 0 else 0.0
         along = min(max(along, 0.0), 1.0)
-        nearest = min(nearest, (x - ax - along * dx) ** 2 + (y - ay - along * dy) ** 2)
+        nearest = min(nearest, square(x - ax - along * dx) + square(y - ay - along * dy))
     return np.sqrt(nearest)
 
 

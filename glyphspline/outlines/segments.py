@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import put
 from ..compiled import compiled
 from ..types import FloatArray, IntArray
 from .contour_arrays import ContourArrays
@@ -38,7 +39,7 @@ def all_cubics(contours: ContourArrays) -> FloatArray:
     """(m, 4, 2) the segments of all contours as cubics; those of contour c begin at ``offsets[c]``."""
     cubics = np.empty((len(contours.degrees), 4, 2))
     for c in range(len(contours.offsets) - 1):
-        cubics[contours.offsets[c] : contours.offsets[c + 1]] = contour_cubics(contours, c)
+        put(contour_cubics(contours, c), cubics[contours.offsets[c] : contours.offsets[c + 1]])
     return cubics
 
 

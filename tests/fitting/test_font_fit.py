@@ -125,7 +125,7 @@ def test_curvature_neither_jumps_nor_swells_where_it_does_not_in_the_source() ->
 def test_jumps_of_curvature_that_may_stay_move_nothing() -> None:
     source = oval(290.0, 262.0).cubics()
     settings = EFFORTS["fast"](near=1.0, angle=0.3, line=25.0, c2=False, margin=0.0, residual=0.0)
-    joints = find_joints(source[None], np.full(4, 3), settings)
+    joints = find_joints(source[None], np.full(4, 3), settings.near, settings.angle, settings.line, settings.c2)
     most = max(end_jump(source[s - 1], source[s], 1000.0) for s in range(4))
     for slack in (most + 0.01, 0.0):
         run = Run(

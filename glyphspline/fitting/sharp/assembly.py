@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import put
 from ...compiled import compiled
 from ...curves.nearest import near_places
 from ...curves.pairing import pair_instances
@@ -44,7 +45,8 @@ def put_together(
     """
     P, arcs = len(pieces.spans), int((pieces.spans > 0).sum())
     segments = np.zeros(P + 1, dtype=np.int64)
-    segments[1:] = np.cumsum(np.maximum(pieces.spans, 1))
+    for q in range(P):
+        segments[q + 1] = segments[q] + max(pieces.spans[q], 1)
     total = segments[P]
     points, degrees = np.empty((3 * total, 2)), np.full(total, 3)
     offsets, starts = np.zeros(contours + 1, dtype=np.int64), np.zeros(contours + 1, dtype=np.int64)
@@ -54,18 +56,18 @@ def put_together(
         c, k, ring, first = pieces.contour[q], pieces.spans[q], pieces.closed[q], pieces.starts[q]
         p, tau, count, end = pieces.vertices[first:, v], pieces.tangents[q, v], k + 3 * (1 - ring), ends[arc]
         if k == 0:
-            points[at], degrees[segments[q]] = p[0], 1
+            points[at, 0], points[at, 1], degrees[segments[q]] = p[0, 0], p[0, 1], 1
         elif k == 1:
             third = chords[q] / 3
             for axis in range(2):
                 own[end, axis], own[end + 3, axis] = p[0, axis], p[1, axis]
                 own[end + 1, axis] = p[0, axis] + third * tau[0, axis]
                 own[end + 2, axis] = p[1, axis] - third * tau[1, axis]
-            points[at : at + 3] = own[end : end + 3]
+            put(own[end : end + 3], points[at : at + 3])
         else:
-            own[end : end + count] = controls[control : control + count]
+            put(controls[control : control + count], own[end : end + count])
             for s in range(k):
-                points[at + 3 * s : at + 3 * s + 3] = splines[span + s, :3]
+                put(splines[span + s, :3], points[at + 3 * s : at + 3 * s + 3])
             span, control = span + k, control + count
         if k > 0:
             ends[arc + 1], closed[arc] = end + count, ring > 0

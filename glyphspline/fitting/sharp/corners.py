@@ -6,7 +6,7 @@ masters the one counts that asks for most: a joint is a corner if it is one in a
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -15,7 +15,6 @@ from ...checks.segments import rounding_turn
 from ...compiled import compiled
 from ...curves.cubics import directions, jet, length, turns
 from ...types import BoolArray, FloatArray, IntArray
-from .settings import Settings
 from .spline_curve import chord
 
 NO_HANDLE = 1e-9
@@ -61,16 +60,26 @@ class Joints(NamedTuple):
     line: BoolArray
 
 
+JointArrays: TypeAlias = tuple[
+    FloatArray, FloatArray, IntArray, FloatArray, BoolArray, BoolArray, FloatArray, FloatArray, BoolArray, BoolArray,
+]  # fmt: skip
+"""The arrays of :class:`Joints`, for calls of compiled functions: Numba finds the type of a plain tuple at once, and
+takes tens of microseconds for that of a named one. A slice of all of a named tuple is a plain one."""
+
+
 @compiled
-def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Joints:
+def find_joints(
+    cubics: FloatArray, degrees: IntArray, near: float, angle: float, line_length: float, c2: bool
+) -> Joints:
     """Sample a contour and classify its joints.
 
     Args:
         cubics: (K, m, 4, 2) its segments in each master; degrees: (m,) as in :class:`...outlines.outline.Contour`.
+        near, angle, line_length, c2: see :class:`.settings.Settings`.
     """
-    masters, m, near = len(cubics), len(degrees), settings.near
+    masters, m = len(cubics), len(degrees)
     places = even_places(cubics, degrees, near)
-    if settings.c2:  # a spline might swing out between the samples beside a tight turn
+    if c2:  # a spline might swing out between the samples beside a tight turn
         places = graded_places(cubics, places, near)
     samples, spacing = sampled(cubics, places, near)
     first = np.searchsorted(places, np.arange(m + 1.0))
@@ -78,18 +87,18 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
     corner, hard, line = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.bool_), np.empty(m, np.bool_)
     smooth = np.empty(m, np.bool_)
     for j in range(m):
-        line[j] = degrees[j] == 1 and chord(samples, first[j], first[j + 1]) >= settings.line
+        line[j] = degrees[j] == 1 and chord(samples, first[j], first[j + 1]) >= line_length
     for v in range(masters):
         own = np.abs(turns(cubics[v], NO_HANDLE))
         for j in range(m):
             bends[j] = max(bends[j], own[j])
-            if own[j] >= settings.angle:
+            if own[j] >= angle:
                 corner[j] = True
-                hard[j] = hard[j] or shows(samples[v], first[j], near, settings.angle)
+                hard[j] = hard[j] or shows(samples[v], first[j], near, angle)
     for j in range(m):
         hard[j] = hard[j] or line[j] or line[j - 1]
         smooth[j] = bends[j] < SMOOTH_KINK
-        if line[j] != line[j - 1] and not smooth[j] and not settings.c2:
+        if line[j] != line[j - 1] and not smooth[j] and not c2:
             smooth[j] = is_roundings(cubics, degrees, j)
         kink = near / (KINK * np.sin(max(min(bends[j], np.pi / 2), 1e-9)))
         for i in (first[j], first[j] - 1):
@@ -107,10 +116,15 @@ def find_joints(cubics: FloatArray, degrees: IntArray, settings: Settings) -> Jo
                     turn = max(turn, abs(leaving[v, j, 0] * first_way[1] - leaving[v, j, 1] * first_way[0]))
                 # Masters' lines have one direction if they turn by no more than this from each other, in radians.
                 tied[j] = not turn < 1e-3
-                if tied[j]:  # the line's vectors in the masters
-                    arriving[:, j] = (straight[:, 3] - straight[:, 0]) / chord(straight, 0, 3)
-                    leaving[:, j] = arriving[:, j]
-        arriving[:, m], leaving[:, m], tied[m] = arriving[:, 0], leaving[:, 0], tied[0]
+                whole = chord(straight, 0, 3)
+                for v in range(masters if tied[j] else 0):  # the line's vectors in the masters
+                    for axis in range(2):
+                        arriving[v, j, axis] = (straight[v, 3, axis] - straight[v, 0, axis]) / whole
+                        leaving[v, j, axis] = arriving[v, j, axis]
+        tied[m] = tied[0]
+        for v in range(masters):
+            for axis in range(2):
+                arriving[v, m, axis], leaving[v, m, axis] = arriving[v, 0, axis], leaving[v, 0, axis]
     return Joints(samples, places, first, spacing, corner, hard, arriving, leaving, tied, line)
 
 
@@ -149,15 +163,16 @@ def sampled(cubics: FloatArray, places: FloatArray, tolerance: float) -> tuple[F
         for i in range(N - 1):
             j = int(places[i])
             samples[v, i, 0], samples[v, i, 1], _, _, _, _ = jet(cubics[v], j, places[i] - j)
-        samples[v, N - 1] = cubics[v, 0, 0]
+        samples[v, N - 1, 0], samples[v, N - 1, 1] = cubics[v, 0, 0, 0], cubics[v, 0, 0, 1]
     for i in range(N - 1):
         j = int(places[i])
         step = chord(samples, i, i + 1)
         spacing[i] = np.inf
         for v in range(masters):
             _, _, dx, dy, ax, ay = jet(cubics[v], j, (places[i] + places[i + 1]) / 2 - j)
-            curvature = abs(dx * ay - dy * ax) / max(np.hypot(dx, dy), 1e-9) ** 3
-            wanted = (tolerance / (BEND * max(curvature, 1e-9 / tolerance) ** 3)) ** 0.25
+            speed = max(np.hypot(dx, dy), 1e-9)
+            curvature = max(abs(dx * ay - dy * ax) / (speed * speed * speed), 1e-9 / tolerance)
+            wanted = (tolerance / (BEND * (curvature * curvature * curvature))) ** 0.25
             own = length(samples[v, i + 1, 0] - samples[v, i, 0], samples[v, i + 1, 1] - samples[v, i, 1])
             if masters == 1 or own > 0.0:
                 spacing[i] = min(spacing[i], wanted * step / own if masters > 1 else wanted)
@@ -183,7 +198,7 @@ def set_directions(
         size, size_there = np.hypot(ax, ay), np.hypot(bx, by)
         leaving[j, 0], leaving[j, 1] = ax / size, ay / size
         arriving[j + 1, 0], arriving[j + 1, 1] = bx / size_there, by / size_there
-    arriving[0] = arriving[m]
+    arriving[0, 0], arriving[0, 1] = arriving[m, 0], arriving[m, 1]
     for j in range(m):
         if corner[j]:
             continue
@@ -197,7 +212,8 @@ def set_directions(
             size = np.hypot(x, y)
             x, y = x / size, y / size
         arriving[j, 0], arriving[j, 1], leaving[j, 0], leaving[j, 1] = x, y, x, y
-    arriving[m], leaving[m] = arriving[0], leaving[0]
+    for axis in range(2):
+        arriving[m, axis], leaving[m, axis] = arriving[0, axis], leaving[0, axis]
 
 
 @compiled

@@ -150,7 +150,8 @@ def _step(
     A: FloatArray, g: FloatArray, first: IntArray,
 ) -> None:  # fmt: skip
     """One Gauss-Newton step on the distances along the normals: the moves of both inner points, into g."""
-    A[:], g[:] = 0.0, 0.0
+    for r in range(4):
+        g[r] = A[r, 0] = A[r, 1] = A[r, 2] = A[r, 3] = 0.0
     total = 0.0
     for j in range(1, len(Q) - 1):
         t, w = x[j], weight[j]
@@ -249,7 +250,8 @@ def fit_between(joints: Joints, i: int, j: int, tolerance: float, rounds: int, t
     whole = chord(joints.samples, a, b)
     for v in range(masters):
         Q = joints.samples[v, a : b + 1]
-        directions[0], directions[1] = joints.leaving[v, i], joints.arriving[v, j]
+        for axis in range(2):
+            directions[0, axis], directions[1, axis] = joints.leaving[v, i, axis], joints.arriving[v, j, axis]
         worst = max(worst, fit_cubic(Q, directions, free, tolerance, rounds, tangents[v]))
         if worst == np.inf:
             break

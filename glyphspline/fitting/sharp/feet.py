@@ -9,7 +9,7 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...curves.cubics import jet, length, newton_step
 from ...types import FloatArray, IntArray
-from .spline_curve import SHORT, Curve
+from .spline_curve import SHORT
 
 EXTRA = 6
 """Most points of the curve between two feet that count as rows of their own."""
@@ -70,26 +70,30 @@ def empty_rows(masters: int, samples: int) -> Rows:
 
 
 @compiled
-def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows) -> float:
-    """Pair the outline with the curve, in order and in every master by itself; the largest distance.
+def measure(
+    samples: FloatArray, beziers: FloatArray, h: FloatArray, size: IntArray, near: float,
+    known: tuple[bool, IntArray, FloatArray], rows: Rows,
+) -> float:  # fmt: skip
+    """Pair the outline with a curve, in order and in every master by itself; the largest distance.
 
     Each foot is the nearest point after the foot before it, by Newton's method across the spans.
 
     Args:
-        near: the tolerance. known: the feet on a similar curve, as first guesses, if it has any in use.
+        samples: (K, n, 2), see :class:`Samples`. beziers, h, size: see :class:`.spline_curve.Curve`.
+        near: the tolerance. known: whether there are first guesses, and spans and parameters of these, (K, n).
         rows: receives the feet and distances.
     """
-    h, k, closed, n = curve.h, curve.size[0], curve.size[1], len(samples.places)
-    worst = 0.0
-    for v in range(len(samples.Q)):
-        Q, b, guessed = samples.Q[v], curve.b[v], known.used[v, 0] > 0
+    k, closed, n, worst = size[0], size[1], samples.shape[1], 0.0
+    for v in range(len(samples)):
+        Q, b = samples[v], beziers[v]
         span, x, e, nx, ny = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v]
         for j in range(n):
             s, at = (k - 1, 1.0) if j > 0 else (0, 0.0)
             if closed or 0 < j < n - 1:
                 s0, at0 = (span[j - 1], x[j - 1]) if j > 0 else (-k, 0.0)
-                later = guessed and (known.span[v, j] > s0 or (known.span[v, j] == s0 and known.x[v, j] > at0))
-                s, at = (known.span[v, j], known.x[v, j]) if later else ((s0, at0) if j > 0 else (0, 0.0))
+                s, at = (s0, at0) if j > 0 else (0, 0.0)
+                if known[0] and (known[1][v, j] > s0 or (known[1][v, j] == s0 and known[2][v, j] > at0)):
+                    s, at = known[1][v, j], known[2][v, j]
                 end = k if not closed else (span[0] + k + 1 if j > 0 else k)
                 span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
             else:
@@ -97,8 +101,8 @@ def measure(samples: Samples, curve: Curve, near: float, known: Rows, rows: Rows
                 e[j], nx[j], ny[j] = _distance(b, k, s, at, Q[j, 0], Q[j, 1])
             worst = max(worst, abs(e[j]))
         worst = max(worst, _add_between(Q, b, h, k, closed, near, v, rows))
-    if len(samples.Q) > 1:
-        worst = max(worst, _measure_slip(curve, rows))
+    if len(samples) > 1:
+        worst = max(worst, _measure_slip(beziers, h, k, rows))
     return worst
 
 
@@ -150,22 +154,15 @@ def _add_between(
     return worst
 
 
-@inlined
-def measure_afresh(samples: Samples, curve: Curve, near: float, rows: Rows) -> float:
-    """Measure a curve without first guesses."""
-    rows.used[:] = 0
-    return measure(samples, curve, near, rows, rows)
-
-
 @compiled
-def _measure_slip(curve: Curve, rows: Rows) -> float:
+def _measure_slip(b: FloatArray, h: FloatArray, k: int, rows: Rows) -> float:
     """How far the feet of a sample are apart along the curve, and the largest distance that this may make in between.
 
     Between the masters, points of the curve are mixed that lie at one parameter. Where the feet are apart and the
     masters run in different directions, or bend, the mixture is off; what it is off by, to first order, counts as
     distance. Where they run side by side it costs nothing, and the masters need not agree on a parametrisation.
     """
-    k, h, masters, n = curve.size[0], curve.h, len(rows.used), rows.slip.shape[1]
+    masters, n = len(rows.used), rows.slip.shape[1]
     knots = np.zeros(k + 1)
     for s in range(k):
         knots[s + 1] = knots[s] + h[s + 2]
@@ -175,13 +172,14 @@ def _measure_slip(curve: Curve, rows: Rows) -> float:
         for v in range(masters):
             s, x = rows.span[v, j], rows.x[v, j]
             own = _wrapped(s, k)
-            _, _, dx, dy, ax, ay = jet(curve.b[v], own, x)
+            _, _, dx, dy, ax, ay = jet(b[v], own, x)
             at[v] = knots[own] + x * h[own + 2] + (s - own) // k * knots[k]
             size = length(dx, dy)
             speed[v] = size / h[own + 2]
-            bend[v] = abs(dx * ay - dy * ax) / max(size, 1e-9) ** 3
-            mean += speed[v] ** 2 * at[v]
-            total += speed[v] ** 2
+            own_size = max(size, 1e-9)
+            bend[v] = abs(dx * ay - dy * ax) / (own_size * own_size * own_size)
+            mean += speed[v] * speed[v] * at[v]
+            total += speed[v] * speed[v]
             nx += speed[v] * rows.nx[v, j]
             ny += speed[v] * rows.ny[v, j]
         size = max(length(nx, ny), 1e-12)
@@ -284,12 +282,20 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
 
 
 @compiled
-def find_places(samples: Samples, curve: Curve, rows: Rows, places: FloatArray) -> None:
-    """The places of the outline beside the knots of a curve, from the feet of the samples in the first master."""
-    k, closed, n, lap = curve.size[0], curve.size[1], len(samples.places), samples.lap
-    feet, own = np.empty(n + 1), np.empty(n + 1)
+def places_beside(
+    samples: FloatArray, known: FloatArray, lap: float, beziers: FloatArray, h: FloatArray, closed: int, near: float
+) -> tuple[float, FloatArray]:  # fmt: skip
+    """The largest distance of a curve, and the places of the outline beside its knots, from the feet of the samples in
+    the first master.
+
+    Args:
+        samples, beziers, h, near: see :func:`measure`. known, lap: the places of samples, see :class:`Samples`.
+    """
+    rows, k, n = empty_rows(len(samples), samples.shape[1]), beziers.shape[1], samples.shape[1]
+    worst = measure(samples, beziers, h, np.array([k, closed]), near, (False, rows.span, rows.x), rows)
+    places, feet, own = np.empty(k + 1 - closed), np.empty(n + 1), np.empty(n + 1)
     for j in range(n):
-        feet[j], own[j] = rows.span[0, j] + rows.x[0, j], samples.places[j]
+        feet[j], own[j] = rows.span[0, j] + rows.x[0, j], known[j]
     feet[n], own[n] = feet[0] + k, own[0] + lap
     for i in range(k + 1 - closed):
         knot = i + k if closed and i < feet[0] else i
@@ -298,9 +304,11 @@ def find_places(samples: Samples, curve: Curve, rows: Rows, places: FloatArray) 
         places[i] = own[j] + ((knot - feet[j]) / gap if gap > 0 else 0.0) * (own[j + 1] - own[j])
     if not closed:
         places[k] = own[n - 1]
-        return
+        return worst, places
     for i in range(1, k):
         if places[i] < places[0]:
             places[i] += lap
-    if places[0] >= lap:
-        places -= lap
+    back = lap if places[0] >= lap else 0.0
+    for i in range(k):
+        places[i] -= back
+    return worst, places

@@ -72,7 +72,7 @@ def fit_contours(
         m, source, own, held = b - a, cubics[:, a:b].copy(), degrees[a:b], tries[a:b]
         run, types, nodes, k, inside = source, own, np.arange(m + 1), 0, np.zeros(m, dtype=np.bool_)
         if m > 1 and ((held < KEPT).any() or (own == 2).any()):
-            joints = find_joints(source, own, settings)
+            joints = find_joints(source, own, settings.near, settings.angle, settings.line, settings.c2)
             cuts = cut_at(joints)
             while k < m and not cuts[k]:
                 k += 1
@@ -82,7 +82,7 @@ def fit_contours(
             if k > 0:
                 chain = np.concatenate((source[:, k:], source[:, :k]), axis=1)
                 own, held = np.roll(own, -k), np.roll(held, -k)
-                joints = find_joints(chain, own, settings)
+                joints = find_joints(chain, own, settings.near, settings.angle, settings.line, settings.c2)
             old = last.cubics[:, last.offsets[c] : last.offsets[c + 1]]
             at = (last.nodes[last.offsets[c] : last.offsets[c + 1]] - k) % m
             order = np.argsort(at)

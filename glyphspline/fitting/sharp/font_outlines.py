@@ -79,7 +79,7 @@ def read_contour(
 ) -> Given:  # fmt: skip
     """A contour, its joints, and the tangents at these: at the ends of lines that are met smoothly, the lines'."""
     K, m = cubics.shape[:2]
-    joints, line = find_joints(cubics, degrees, settings), degrees == 1
+    joints, line = find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2), degrees == 1
     upright, cuts, way = np.ones(m + 1, np.bool_), joints.corner.copy(), np.empty((2, K, m + 1, 2))
     for w in range(K):
         upright &= set_upright(cubics[w], alone(joints, w))
@@ -179,6 +179,6 @@ def mean(weights: FloatArray, vectors: FloatArray) -> tuple[float, float]:
 
 
 @compiled
-def is_ring(given: Given, i: int, j: int) -> bool:
-    """Whether a run is a whole contour without an end."""
-    return i == 0 and j == len(given.line) and not given.cuts[0]
+def is_ring(cuts: BoolArray, i: int, j: int) -> bool:
+    """Whether a run is a whole contour without an end; cuts: (m + 1,) the joints at which runs end."""
+    return i == 0 and j == len(cuts) - 1 and not cuts[0]

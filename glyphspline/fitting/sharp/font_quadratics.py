@@ -260,7 +260,7 @@ def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tup
             continue
         legs = (1 - 2 * end) * (q.c[:, s] - q.node[:, s + end])
         arriving, leaving = given.way[0, :, k], given.way[1, :, k]
-        if is_ring(given, i, j):
+        if is_ring(given.cuts, i, j):
             arriving, leaving = q.node[:, R] - q.c[:, R - 1], q.c[:, 0] - q.node[:, 0]
         share, worse, off = 1.0 if given.line[k % m] or given.line[k - 1] else 2.0, False, False
         for weights in mixes:
@@ -325,13 +325,13 @@ def fit_run(
             made = assembled(given, ends, tries, tolerance, known)
             q = borrowed(made)
             relax(q, samples, 0.1 * tolerance, np.inf)
-            if aim(q, tries, is_ring(given, i, j)):
+            if aim(q, tries, is_ring(given.cuts, i, j)):
                 relax(q, samples, 0.1 * tolerance, np.inf)
             round_quads(q, samples, tolerance)
             bad, far, kinks = wrong_quads(q, given, i, j, tolerance)
             again = bad.any() and next_tries(q, bad, stored.known, tries)
             rank = kinks + (far / tolerance if far <= tolerance else 1e3 * far)
-            if is_ring(given, i, j):
+            if is_ring(given.cuts, i, j):
                 q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
             size = q.c.shape[1] + 1 + np.count_nonzero(~q.implied[1:-1])
             good = not bad.any() and not (done and size >= count)

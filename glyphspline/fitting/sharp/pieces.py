@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from ...compiled import compiled
-from ...types import FloatArray, IntArray
+from ...outlines.contour_arrays import offsets_of
+from ...types import BoolArray, FloatArray, IntArray
 
 
 class Pieces(NamedTuple):
@@ -35,81 +37,92 @@ class Pieces(NamedTuple):
     errors: FloatArray
 
 
-@compiled
-def empty_pieces(masters: int, count: int, vertices: int) -> Pieces:
-    """Arrays for up to ``count`` pieces, with up to ``vertices`` vertices together."""
+PieceArrays: TypeAlias = tuple[
+    IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray, FloatArray
+]
+"""The arrays of pieces, for calls of compiled functions: see :data:`.corners.JointArrays`."""
+
+
+def part(pieces: Pieces, first: int, end: int) -> Pieces:
+    """Pieces ``first`` to ``end``, in the same memory."""
+    own, a, b = slice(first, end), int(pieces.starts[first]), int(pieces.starts[end])
     return Pieces(
-        np.empty(count, dtype=np.int64), np.empty((count, 2), dtype=np.int64), np.empty(count, dtype=np.int64),
-        np.zeros(count, dtype=np.int64), np.zeros(count + 1, dtype=np.int64), np.empty((vertices, masters, 2)),
-        np.empty(vertices), np.zeros((count, masters, 2, 2)), np.empty(count),
+        pieces.contour[own], pieces.joints[own], pieces.spans[own], pieces.closed[own],
+        pieces.starts[first : end + 1] - a, pieces.vertices[a:b], pieces.places[a:b], pieces.tangents[own],
+        pieces.errors[own],
     )  # fmt: skip
 
 
-@compiled
-def add_source(pieces: Pieces, count: int, c: int, i: int, j: int, cubics: FloatArray, degrees: IntArray) -> int:
-    """Add a contour's segments between two joints as they are, as lines and arcs of one span; the number then."""
-    for s in range(i, j):
-        at, own = pieces.starts[count], cubics[:, s].copy()
-        pieces.contour[count], pieces.joints[count, 0], pieces.joints[count, 1] = c, s, s + 1
-        pieces.spans[count], pieces.closed[count], pieces.errors[count] = min(degrees[s] - 1, 1), 0, 0.0
-        square = 0.0
-        for v in range(len(own)):
-            square += np.hypot(own[v, 3, 0] - own[v, 0, 0], own[v, 3, 1] - own[v, 0, 1]) ** 2
-        factor = 3 / np.sqrt(square / len(own)) if square > 0.0 else 3.0  # see chords
-        for end in range(2):
-            pieces.places[at + end] = s + end
-            pieces.vertices[at + end] = own[:, 3 * end]
-            pieces.tangents[count, :, end] = (own[:, 2 * end + 1] - own[:, 2 * end]) * factor
-        pieces.starts[count + 1] = at + 2
-        count += 1
-    return count
+def joined(parts: Sequence[Pieces], masters: int) -> Pieces:
+    """All pieces of several, in K masters."""
+    none = source_pieces(0, 0, np.empty((masters, 0, 4, 2)), np.empty(0, dtype=np.int64))
+    contour, joints, spans, closed, starts, *others = zip(none, *parts, strict=True)
+    lengths = np.concatenate([own[1:] - own[:-1] for own in starts])
+    before, after = (map(np.concatenate, columns) for columns in ((contour, joints, spans, closed), others))
+    return Pieces._make([*before, offsets_of(lengths), *after])
 
 
-@compiled
-def copy_piece(source: Pieces, q: int, target: Pieces, count: int, turned: int) -> int:
-    """Add a copy of piece q of others after ``count`` pieces; the number then.
+def source_pieces(c: int, i: int, cubics: FloatArray, degrees: IntArray) -> Pieces:
+    """Segments (K, n, 4, 2) of contour c from its joint i on as they are, as lines and arcs of one span."""
+    masters, n = cubics.shape[:2]
+    squares = np.zeros(n)
+    for own in cubics:
+        chords = np.hypot(own[:, 3, 0] - own[:, 0, 0], own[:, 3, 1] - own[:, 0, 1])
+        squares += chords * chords
+    factors = 3 / np.sqrt(np.where(squares > 0.0, squares / masters, 1.0))  # see chords
+    ends = i + np.arange(n)[:, None] + np.arange(2)
+    return Pieces(
+        np.full(n, c), ends, np.minimum(degrees - 1, 1), np.zeros(n, dtype=np.int64), 2 * np.arange(n + 1),
+        cubics[:, :, ::3].transpose(1, 2, 0, 3).reshape(2 * n, masters, 2), ends.reshape(-1).astype(np.float64),
+        (cubics[:, :, 1::2] - cubics[:, :, ::2]).transpose(1, 0, 2, 3) * factors[:, None, None, None], np.zeros(n),
+    )  # fmt: skip
+
+
+def turned(pieces: Pieces, offsets: IntArray, flipped: BoolArray) -> Pieces:
+    """The same pieces with those of flipped contours the other way round, from the last one's end on.
 
     Args:
-        turned: the segments of its contour if the copy runs the other way round, or else 0.
+        offsets: (C + 1,) where the segments of each contour begin. flipped: (C,).
     """
-    a, n, at, closed = source.starts[q], source.starts[q + 1] - source.starts[q], target.starts[count], source.closed[q]
-    target.contour[count], target.errors[count] = source.contour[q], source.errors[q]
-    target.spans[count], target.closed[count] = source.spans[q], closed
-    target.starts[count + 1] = at + n
-    if not turned:
-        target.joints[count], target.tangents[count] = source.joints[q], source.tangents[q]
-        target.vertices[at : at + n], target.places[at : at + n] = source.vertices[a : a + n], source.places[a : a + n]
-        return count + 1
-    lap = turned if closed and source.places[a] > 0.0 else 0
-    for end in range(2):
-        target.joints[count, end] = turned - source.joints[q, 1 - end]
-        target.tangents[count, :, end] = -source.tangents[q, :, 1 - end]
-    for r in range(n):
-        s = a + (n - r if closed else n - 1 - r) % n  # the first vertex of a closed curve stays the first
-        target.vertices[at + r], target.places[at + r] = source.vertices[s], turned + lap - source.places[s]
-    if closed:
-        target.places[at] -= turned
-    return count + 1
+    return Pieces(*turned_arrays(pieces[:], offsets, flipped))
 
 
 @compiled
-def enlarged(pieces: Pieces, count: int, more: int, vertices: int) -> Pieces:
-    """The first ``count`` pieces, in larger arrays if others do not fit after them."""
-    needed = pieces.starts[count] + vertices
-    if count + more <= len(pieces.spans) and needed <= len(pieces.places):
-        return pieces
-    larger = empty_pieces(pieces.vertices.shape[1], 2 * (count + more), 2 * needed)
-    for q in range(count):
-        copy_piece(pieces, q, larger, q, 0)
-    return larger
-
-
-@compiled
-def used(pieces: Pieces, count: int) -> Pieces:
-    """The first ``count`` pieces."""
-    end = pieces.starts[count]
-    return Pieces(
-        pieces.contour[:count], pieces.joints[:count], pieces.spans[:count], pieces.closed[:count],
-        pieces.starts[: count + 1], pieces.vertices[:end], pieces.places[:end], pieces.tangents[:count],
-        pieces.errors[:count],
+def turned_arrays(pieces: PieceArrays, offsets: IntArray, flipped: BoolArray) -> PieceArrays:
+    """The arrays of pieces, turned: see :func:`turned`."""
+    old = Pieces(*pieces)
+    P, masters = len(old.spans), old.vertices.shape[1]
+    order, first = np.arange(P), 0
+    for q in range(P):
+        c = old.contour[q]
+        if q > 0 and old.contour[q - 1] != c:
+            first = q
+        if flipped[c] and (q + 1 == P or old.contour[q + 1] != c):
+            for r in range(first, q + 1):
+                order[r] = first + q - r
+    joints, tangents, starts = np.empty_like(old.joints), np.empty_like(old.tangents), np.zeros_like(old.starts)
+    vertices, places = np.empty_like(old.vertices), np.empty_like(old.places)
+    for count in range(P):
+        q, at = order[count], starts[count]
+        c, a, n, ring = old.contour[q], old.starts[q], old.starts[q + 1] - old.starts[q], old.closed[q]
+        m, turns, sign = offsets[c + 1] - offsets[c], flipped[c], -1.0 if flipped[c] else 1.0
+        lap = m if ring and old.places[a] > 0.0 else 0
+        for end in range(2):
+            other = 1 - end if turns else end
+            joints[count, end] = m - old.joints[q, other] if turns else old.joints[q, end]
+            for v in range(masters):
+                for axis in range(2):
+                    tangents[count, v, end, axis] = sign * old.tangents[q, v, other, axis]
+        for r in range(n):
+            s = a + r
+            if turns:
+                s = a + (n - r if ring else n - 1 - r) % n  # the first vertex of a closed curve stays the first
+            places[at + r] = m + lap - old.places[s] if turns else old.places[s]
+            for v in range(masters):
+                vertices[at + r, v, 0], vertices[at + r, v, 1] = old.vertices[s, v, 0], old.vertices[s, v, 1]
+        if turns and ring:
+            places[at] -= m
+        starts[count + 1] = at + n
+    return (
+        old.contour, joints, old.spans[order], old.closed[order], starts, vertices, places, tangents, old.errors[order],
     )  # fmt: skip

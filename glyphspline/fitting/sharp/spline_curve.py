@@ -105,14 +105,45 @@ def chord(p: FloatArray, i: int, j: int) -> float:
 
 
 @compiled
-def set_handles(curve: Curve, tangents: FloatArray) -> None:
-    """The end handles of an arc from its end tangents (K, 2, 2), derivatives by chord length."""
-    k, p, X = curve.size[0], curve.p, curve.X
-    if curve.size[1]:
-        return
+def begun(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
+    """A curve with vertices (K, n, 2), and if it is an arc with the tips (K, 2, 2) of its end handles."""
+    masters, n = p.shape[0], p.shape[1]
+    k = n - 1 + closed
+    curve = empty_curve(masters, k, closed)
+    curve.size[0] = k
+    for v in range(masters):
+        for axis in range(2):
+            for i in range(n):
+                curve.p[v, i, axis] = p[v, i, axis]
+            if not closed:
+                curve.X[v, 0, axis], curve.X[v, k + 2, axis] = p[v, 0, axis], p[v, k, axis]
+                curve.X[v, 1, axis], curve.X[v, k + 1, axis] = tips[v, 0, axis], tips[v, 1, axis]
+    return curve
+
+
+@compiled
+def result_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Copies of a curve's vertices (K, n, 2), the tips (K, 2, 2) of its handles, and Bézier points (K, k, 4, 2)."""
+    masters, k, closed = len(curve.p), curve.size[0], curve.size[1]
+    p, tips, b = np.empty((masters, k + 1 - closed, 2)), np.zeros((masters, 2, 2)), np.empty((masters, k, 4, 2))
+    for v in range(masters):
+        copy_first(curve.p[v].reshape(-1), p[v].reshape(-1), 2 * (k + 1 - closed))
+        copy_first(curve.b[v].reshape(-1), b[v].reshape(-1), 8 * k)
+        for axis in range(0 if closed else 2):
+            tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
+    return p, tips, b
+
+
+@compiled
+def tips_of(p: FloatArray, tangents: FloatArray) -> FloatArray:
+    """(K, 2, 2) the tips of an arc's end handles, from its end tangents (K, 2, 2), derivatives by chord length."""
+    k, tips = p.shape[1] - 1, np.empty((len(p), 2, 2))
     first, last = chord(p, 0, 1) / 3, chord(p, k - 1, k) / 3
-    X[:, 0], X[:, k + 2] = p[:, 0], p[:, k]
-    X[:, 1], X[:, k + 1] = p[:, 0] + first * tangents[:, 0], p[:, k] - last * tangents[:, 1]
+    for v in range(len(p)):
+        for axis in range(2):
+            tips[v, 0, axis] = p[v, 0, axis] + first * tangents[v, 0, axis]
+            tips[v, 1, axis] = p[v, k, axis] - last * tangents[v, 1, axis]
+    return tips
 
 
 @compiled

@@ -19,9 +19,9 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...curves.cubics import jet, length
 from ...types import FloatArray, IntArray
-from .feet import EXTRA, Rows, Samples, empty_rows
-from .settings import Settings
-from .spline_curve import FREE, TIED, Curve, empty_curve, span_weights
+from .cubics import solve
+from .feet import EXTRA, Rows
+from .spline_curve import FREE, TIED, Curve, span_weights
 
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
@@ -30,32 +30,19 @@ BAND = 8
 """Unknowns that meet in one equation: those of four slots."""
 
 
-class Fit(NamedTuple):
-    """The search for the spline of a stretch: all that it works on, in arrays for curves of up to ``room`` spans.
+class System(NamedTuple):
+    """The equations of a step, for a curve of k spans in K masters of which ``width`` slots move.
 
     Attributes:
-        samples: of the stretch. near: how near all of them have to be.
-        curve, trial: the curve so far, and one step further. rows, tried: of both.
-        best: the curve with the fewest spans that passed.
-        costs: (room + 1,) what taking out each vertex of ``best`` is estimated to cost.
-        frames: (K, room + 1, 4) normal and tangent of each vertex at its footpoint.
-        moves: (K, room + 1, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its
-            four slots: across and along the curve; along, a vertex takes its knot with it.
-        gram: (K, room + 1, 9, 8) equations of each span.
-        A: the equations of one master. first: (2 room + 2,) where each of its rows begins. step: (K, 2 room + 2).
-        place: (room + 3,) which of the slots that move each slot i is, in entry i + 1; -1 if it does not move.
+        frames: (K, k + 1, 4) normal and tangent of each vertex at its footpoint.
+        moves: (K, k, 8, 8) derivatives of the coordinates of each span's Bézier points by the unknowns of its four
+            slots: across and along the curve; along, a vertex takes its knot with it.
+        gram: (K, k, 9, 8) equations of each span.
+        A: the equations of one master. first: (2 width,) where each of its rows begins. step: (K, 2 width).
+        place: (k + 3,) which of the slots that move each slot i is, in entry i + 1; -1 if it does not move.
         longer: (K, 2) by how much the handles of tied ends become longer; NaN while that is open.
     """
 
-    samples: Samples
-    near: float
-    settings: Settings
-    curve: Curve
-    trial: Curve
-    best: Curve
-    rows: Rows
-    tried: Rows
-    costs: FloatArray
     frames: FloatArray
     moves: FloatArray
     gram: FloatArray
@@ -67,29 +54,34 @@ class Fit(NamedTuple):
 
 
 @compiled
-def empty_fit(samples: Samples, near: float, settings: Settings, spans: int, closed: int) -> Fit:
-    """A search for curves of up to ``spans`` spans."""
-    masters, n, slots = len(samples.Q), len(samples.places), spans + 1
-    return Fit(
-        samples, near, settings,
-        empty_curve(masters, spans, closed), empty_curve(masters, spans, closed), empty_curve(masters, spans, closed),
-        empty_rows(masters, n), empty_rows(masters, n), np.empty(slots),
-        np.empty((masters, slots, 4)), np.empty((masters, slots, 8, 8)), np.empty((masters, slots, 9, 8)),
-        np.empty((2 * slots, 2 * slots)), np.empty((masters, 2 * slots)), np.empty(2 * slots, dtype=np.int64),
-        np.empty(slots + 2, dtype=np.int64), np.full((masters, 2), np.nan),
+def system_of(masters: int, k: int, closed: int, i: int, reach: int) -> System:
+    """A system for moving the vertices up to ``reach`` on either side of vertex i."""
+    slots, width, start = k + 1 - closed, 2 * reach, 0
+    if width >= slots:
+        width = slots
+    else:
+        start = i - reach if closed else min(max(i - reach, 0), slots - width)
+    place = np.full(k + 3, -1)
+    for n in range(width):
+        place[(start + n) % slots + 1] = n
+    if closed:
+        place[0], place[k + 1], place[k + 2] = place[k], place[1], place[2]
+    return System(
+        np.empty((masters, k + 1, 4)), np.empty((masters, k, 8, 8)), np.empty((masters, k, 9, 8)),
+        np.empty((2 * width, 2 * width)), np.empty((masters, 2 * width)), np.empty(2 * width, dtype=np.int64), place,
+        np.full((masters, 2), np.nan),
     )  # fmt: skip
 
 
 @compiled
-def differentiate(fit: Fit) -> None:
+def differentiate(curve: Curve, system: System) -> None:
     """The frames of all vertices, and the derivatives of the Bézier points by the unknowns.
 
     Those by the knots are differences; a knot's influence beyond two spans to either side is small and left out.
     """
-    curve = fit.curve
     k, closed, h = curve.size[0], curve.size[1], curve.h
     for v in range(len(curve.X)):
-        X, frames, moves = curve.X[v], fit.frames[v], fit.moves[v]
+        X, frames, moves = curve.X[v], system.frames[v], system.moves[v]
         for i in range(k + 1 - closed):
             if i in (0, k) and not closed:
                 tip, end = (1, 0) if i == 0 else (k + 1, k + 2)
@@ -118,7 +110,7 @@ def differentiate(fit: Fit) -> None:
             if 0 <= s < k:
                 span_weights(h, s, W)
                 for v in range(len(curve.X)):
-                    X, b, moves = curve.X[v], curve.b[v], fit.moves[v]
+                    X, b, moves = curve.X[v], curve.b[v], system.moves[v]
                     for r in range(4):
                         for axis in range(2):
                             total = W[r, 0] * X[s, axis] + W[r, 1] * X[s + 1, axis]
@@ -172,11 +164,13 @@ def _add_row(
 
 
 @compiled
-def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
+def add_rows(
+    rows: Rows, beziers: FloatArray, h: FloatArray, system: System, scale: float, minimax: bool, wobble: float
+) -> None:  # fmt: skip
     """The equations of all rows by spans, in units of ``scale``: matrices (8, 8), and right sides in their row 8."""
-    rows, k, B, J = fit.rows, fit.curve.size[0], np.empty(4), np.empty(8)
-    for v in range(len(fit.gram)):
-        gram, moves, b, lever = fit.gram[v], fit.moves[v], fit.curve.b[v], rows.lever[v]
+    k, B, J = system.gram.shape[1], np.empty(4), np.empty(8)
+    for v in range(len(system.gram)):
+        gram, moves, b, lever = system.gram[v], system.moves[v], beziers[v], rows.lever[v]
         span, xs, e, nx, ny, slip = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], rows.slip[v]
         for s in range(k):
             for u in range(9):
@@ -186,22 +180,29 @@ def add_rows(fit: Fit, scale: float, minimax: bool, wobble: float) -> None:
             s, x = span[r] % k, xs[r]
             y = 1 - x
             B[0], B[1], B[2], B[3] = y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x
-            square = (e[r] / scale) ** 2
-            weight = (2 * square + 0.02 if minimax else 1.0) / scale**2
+            own = e[r] / scale
+            weight = (2 * (own * own) + 0.02 if minimax else 1.0) / (scale * scale)
             _add_row(gram[s], J, moves[s], B, nx[r], ny[r], e[r], weight)
             if r < len(slip):
-                square = (lever[r] * slip[r] / scale) ** 2
-                weight = (2 * square + 0.02 if minimax else 1.0) * (lever[r] / scale) ** 2
+                own, share = lever[r] * slip[r] / scale, lever[r] / scale
+                weight = (2 * (own * own) + 0.02 if minimax else 1.0) * (share * share)
                 _add_row(gram[s], J, moves[s], B, ny[r], -nx[r], slip[r], weight)
         B[0], B[1], B[2], B[3] = -6.0, 18.0, -18.0, 6.0
         for s in range(k):
             x, y = middle_normal(b[s])
             wanted = -third_along(b, s, x, y)
-            _add_row(gram[s], J, moves[s], B, x, y, wanted, wobble / fit.curve.h[s + 2] ** 5)
+            _add_row(gram[s], J, moves[s], B, x, y, wanted, wobble / fifth_power(h[s + 2]))
         for s in range(k):
             for u in range(8):
                 for w in range(u):
                     gram[s, w, u] = gram[s, u, w]
+
+
+@inlined
+def fifth_power(x: float) -> float:
+    """The product that compiled code makes of ``x ** 5``; Python asks the C library."""
+    square = x * x
+    return x * (square * square)
 
 
 @inlined
@@ -223,19 +224,23 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
     total = 0.0
     for v in range(len(rows.used)):
         for r in range(rows.used[v, 0]):
-            square = (rows.e[v, r] / scale) ** 2
+            own = rows.e[v, r] / scale
+            square = own * own
             total += square * square + 0.02 * square if minimax else square
         for r in range(rows.slip.shape[1]):
-            square = (rows.lever[v, r] * rows.slip[v, r] / scale) ** 2
+            own = rows.lever[v, r] * rows.slip[v, r] / scale
+            square = own * own
             total += square * square + 0.02 * square if minimax else square
     for s in range(1 - curve.size[1], curve.size[0]):
-        total += rows.e.size / (1 + EXTRA) * ratio_excess(curve, s) ** 2
+        excess = ratio_excess(curve, s)
+        total += rows.e.size / (1 + EXTRA) * (excess * excess)
     thirds = 0.0  # the integral of the squared third derivative across the curve
     for v in range(len(curve.b)):
         b = curve.b[v]
         for s in range(curve.size[0]):
             nx, ny = middle_normal(b[s])
-            thirds += third_along(b, s, nx, ny) ** 2 / curve.h[s + 2] ** 5
+            third = third_along(b, s, nx, ny)
+            thirds += third * third / fifth_power(curve.h[s + 2])
     return total + wobble * thirds
 
 
@@ -257,14 +262,33 @@ def middle_normal(b: FloatArray) -> tuple[float, float]:
 
 
 @compiled
-def equations(fit: Fit, v: int, damping: float, width: int) -> None:
-    """The equations in master v of one step of ``width`` slots: of the rows, of ratios, damping.
+def solve_step(
+    curve: Curve, system: System, damping: float, weight: int, directions: FloatArray, free: IntArray
+) -> None:  # fmt: skip
+    """The step in all masters; handles of tied ends get one factor in all of them.
+
+    Args:
+        weight: of the ratios of chords. directions, free: see :class:`.feet.Samples`.
+    """
+    for v in range(len(system.longer)):
+        system.longer[v, 0] = system.longer[v, 1] = np.nan
+    agreed = tied = True
+    while agreed:
+        for v in range(len(system.step)):
+            equations(curve, system, v, damping, weight, free)
+            solve(system.A, system.step[v], system.first, system.step.shape[1])
+        agreed = tied and agree_on_handles(curve.size, system, directions, free)
+        tied = False
+
+
+@compiled
+def equations(curve: Curve, system: System, v: int, damping: float, weight: int, free: IntArray) -> None:
+    """The equations in master v of one step: of the rows, of ratios, damping.
 
     Ratios of adjacent chords are brought back to what is allowed; their weight is the number of samples.
     """
-    curve, A, g, first, place, weight = fit.curve, fit.A, fit.step[v], fit.first, fit.place, len(fit.samples.places)
-    k, closed, h = curve.size[0], curve.size[1], curve.h
-    n = 2 * width
+    A, g, first, place = system.A, system.step[v], system.first, system.place
+    k, closed, h, n = curve.size[0], curve.size[1], curve.h, len(system.first)
     for r in range(n):
         g[r], first[r] = 0.0, r
         for c in range(0 if closed and r >= n - BAND else max(r - BAND, 0), r + 1):
@@ -273,7 +297,7 @@ def equations(fit: Fit, v: int, damping: float, width: int) -> None:
     for s in range(k):
         for c in range(4):
             index[2 * c], index[2 * c + 1] = 2 * place[s + c], 2 * place[s + c] + 1
-        _scatter(A, g, first, index, fit.gram[v, s], 8)
+        _scatter(A, g, first, index, system.gram[v, s], 8)
     slope, gram = np.empty(3), np.empty((4, 3))
     for s in range(1 - closed, k):
         excess = ratio_excess(curve, s)
@@ -298,10 +322,10 @@ def equations(fit: Fit, v: int, damping: float, width: int) -> None:
     for end, i in ((0, 0), (1, k)):
         r = 2 * place[i + 1]
         if not closed and r >= 0:
-            A[r, r] += damping * mean + (0.0 if fit.samples.free[end] == FREE else 1e9 * max(mean, 1.0))
-            if not np.isnan(fit.longer[v, end]):
+            A[r, r] += damping * mean + (0.0 if free[end] == FREE else 1e9 * max(mean, 1.0))
+            if not np.isnan(system.longer[v, end]):
                 A[r + 1, r + 1] += 1e6 * max(mean, 1.0)
-                g[r + 1] += 1e6 * max(mean, 1.0) * fit.longer[v, end]
+                g[r + 1] += 1e6 * max(mean, 1.0) * system.longer[v, end]
 
 
 @compiled
@@ -320,19 +344,19 @@ def _scatter(A: FloatArray, g: FloatArray, first: IntArray, index: IntArray, gra
 
 
 @compiled
-def agree_on_handles(fit: Fit) -> bool:
+def agree_on_handles(sizes: IntArray, system: System, directions: FloatArray, free: IntArray) -> bool:
     """Give the handles of tied ends one factor, the mean of what the masters ask for; whether any end is tied."""
-    samples, k, tied = fit.samples, fit.curve.size[0], False
+    k, tied = sizes[0], False
     for end, i in ((0, 0), (1, k)):
-        r = 2 * fit.place[i + 1]
-        if fit.curve.size[1] or samples.free[end] != TIED or r < 0:
+        r = 2 * system.place[i + 1]
+        if sizes[1] or free[end] != TIED or r < 0:
             continue
         tied, along, whole = True, 0.0, 0.0
-        for v in range(len(fit.step)):
-            size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
-            along += fit.step[v, r + 1] * size
+        for v in range(len(system.step)):
+            size = length(directions[v, end, 0], directions[v, end, 1])
+            along += system.step[v, r + 1] * size
             whole += size * size
-        for v in range(len(fit.step)):
-            size = length(samples.directions[v, end, 0], samples.directions[v, end, 1])
-            fit.longer[v, end] = along / whole * size
+        for v in range(len(system.step)):
+            size = length(directions[v, end, 0], directions[v, end, 1])
+            system.longer[v, end] = along / whole * size
     return tied

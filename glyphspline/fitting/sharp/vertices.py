@@ -6,18 +6,20 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet, length
-from .corners import Joints
-from .feet import Samples, span_errors
-from .spline_curve import FREE, HELD, SHORTEST_HANDLE, TIED, Curve, chord, copy_curve, set_handles
-from .spline_equations import Fit, third_along
+from ...types import FloatArray, IntArray
+from .corners import JointArrays, Joints
+from .feet import Samples
+from .spline_curve import FREE, HELD, SHORTEST_HANDLE, TIED, chord, tips_of
+from .spline_equations import third_along
 
 GROWTH = 1.35
 """How fast the wanted distance of vertices grows along the outline: by exp(1.35) < 4 from one to the next."""
 
 
 @compiled
-def samples_between(joints: Joints, i: int, j: int, closed: int) -> Samples:
-    """The samples from joint i to joint j, with the integral of the density of vertices."""
+def samples_between(around: JointArrays, i: int, j: int, closed: int) -> Samples:
+    """The samples from joint i to joint j of :class:`.corners.Joints`, with the integral of the density of vertices."""
+    joints = Joints(*around)
     a, b = joints.first[i], joints.first[j]
     D, h, step = np.empty(b - a + 1), joints.spacing[a:b].copy(), np.empty(b - a)
     for r in range(b - a):
@@ -34,7 +36,9 @@ def samples_between(joints: Joints, i: int, j: int, closed: int) -> Samples:
     for r in range(n):
         D[r + 1] = D[r] + step[r] / h[r]
     directions, free = np.empty((len(joints.samples), 2, 2)), np.empty(2, dtype=np.int64)
-    directions[:, 0], directions[:, 1] = joints.leaving[:, i], joints.arriving[:, j]
+    for v in range(len(directions)):
+        for axis in range(2):
+            directions[v, 0, axis], directions[v, 1, axis] = joints.leaving[v, i, axis], joints.arriving[v, j, axis]
     for end, joint in ((0, i), (1, j)):
         free[end] = FREE if joints.corner[joint] else (TIED if joints.tied[joint] else HELD)
     stop = b + 1 - closed
@@ -42,56 +46,65 @@ def samples_between(joints: Joints, i: int, j: int, closed: int) -> Samples:
 
 
 @compiled
-def place_vertices(fit: Fit, k: int) -> bool:
-    """A curve of k spans with its vertices on the outline, as the density has them; False if it is too large."""
-    curve, samples = fit.curve, fit.samples
-    Q, D, p, closed = samples.Q, samples.D, curve.p, curve.size[1]
-    if k > p.shape[1] - 1:
-        return False
-    curve.size[0] = k
-    j = 0
+def place_vertices(
+    outline: tuple[FloatArray, FloatArray, IntArray], D: FloatArray, k: int, closed: int
+) -> tuple[FloatArray, FloatArray]:
+    """Vertices (K, n, 2) of k spans on the outline, as the density has them, and tips (K, 2, 2) of an arc's handles.
+
+    Args:
+        outline: ``Q``, ``directions`` and ``free`` of :class:`.feet.Samples`.
+    """
+    Q, directions, free = outline
+    masters, n = Q.shape[0], Q.shape[1]
+    p, j = np.empty((masters, k + 1 - closed, 2)), 0
     for i in range(k + 1 - closed):
         goal = D[len(D) - 1] * i / k
         while j + 2 < len(D) and D[j + 1] <= goal:
             j += 1
-        after = (j + 1) % len(samples.places)
+        after = (j + 1) % n
         share = min(max((goal - D[j]) / max(D[j + 1] - D[j], 1e-300), 0.0), 1.0)
-        for v in range(len(Q)):
+        for v in range(masters):
             for axis in range(2):
                 p[v, i, axis] = Q[v, j, axis] + share * (Q[v, after, axis] - Q[v, j, axis])
     if closed:
-        return True
-    p[:, k] = Q[:, len(samples.places) - 1]
-    tangents = samples.directions.copy()
+        return p, np.zeros((masters, 2, 2))
+    for v in range(masters):
+        p[v, k, 0], p[v, k, 1] = Q[v, n - 1, 0], Q[v, n - 1, 1]
+    tangents = directions.copy()
     for end in range(2):
         i = end * (k - 1)
         whole = chord(p, i, i + 1)
-        if whole > 0.0 and samples.free[end] != TIED:
-            for v in range(len(Q)):
+        if whole > 0.0 and free[end] != TIED:
+            for v in range(masters):
                 own = length(p[v, i + 1, 0] - p[v, i, 0], p[v, i + 1, 1] - p[v, i, 1])
-                tangents[v, end] *= max(own / whole, SHORTEST_HANDLE)
-    set_handles(curve, tangents)
-    return True
+                for axis in range(2):
+                    tangents[v, end, axis] *= max(own / whole, SHORTEST_HANDLE)
+    return p, tips_of(p, tangents)
 
 
 @compiled
-def insert_vertices(fit: Fit, growth: float) -> bool:
-    """Cut the worst spans in two, no two adjacent ones; False if the curve would be too large.
+def insert_vertices(
+    vertices: tuple[FloatArray, FloatArray], beziers: FloatArray, errors: FloatArray, near: float, growth: float,
+    most: int,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """Vertices and tips with the worst spans cut in two, no two adjacent ones.
 
     Args:
+        vertices: of a curve, and tips; they and the others are as :func:`.vertex_steps.move_vertices` returns them.
         growth: power of a span's error with which vertices are added; with infinity all that miss the tolerance are.
+        most: spans then, at most.
+
     """
-    curve, trial, near = fit.curve, fit.trial, fit.near
-    k, closed = curve.size[0], curve.size[1]
-    errors = span_errors(fit.rows, k)
+    p, tips = vertices
+    masters, slots, k = p.shape[0], p.shape[1], len(errors)
+    closed = k + 1 - slots
     wanted = 0.0
     for s in range(k):
         if errors[s] > near:
             wanted += min((errors[s] / near) ** growth - 1, 1.0)
-    count = min(max(int(np.rint(wanted)), 1), curve.p.shape[1] - 1 - k)
-    if count <= 0:
-        return False
+    count = min(max(int(np.rint(wanted)), 1), most - k)
     cut = np.zeros(k, dtype=np.bool_)
+    added = 0
     for _ in range(count):
         worst = -1
         for s in range(k):
@@ -101,55 +114,66 @@ def insert_vertices(fit: Fit, growth: float) -> bool:
         if worst < 0:
             break
         cut[worst] = True
-    copy_curve(curve, trial)
-    at = 0
-    for s in range(k):
-        curve.p[:, at] = trial.p[:, s]
+        added += 1
+    more, at = np.empty((masters, slots + added, 2)), 0
+    for s in range(slots):
+        for v in range(masters):
+            more[v, at, 0], more[v, at, 1] = p[v, s, 0], p[v, s, 1]
         at += 1
-        if cut[s]:
-            for v in range(len(curve.p)):
-                curve.p[v, at, 0], curve.p[v, at, 1], _, _, _, _ = jet(trial.b[v], s, 0.5)
+        if s < k and cut[s]:
+            for v in range(masters):
+                more[v, at, 0], more[v, at, 1], _, _, _, _ = jet(beziers[v], s, 0.5)
             at += 1
-    resize(curve, trial, at)
-    return True
+    return more, tips if closed else shortened(p, tips, more)
 
 
 @compiled
-def resize(curve: Curve, old: Curve, k: int) -> None:
-    """Give a curve whose vertices are set, but for the last of an arc, k spans; an arc's ends stay those of ``old``."""
-    before = old.size[0]
-    curve.size[0] = k
-    if curve.size[1]:
-        return
-    curve.p[:, k] = old.p[:, before]
-    curve.X[:, :2], curve.X[:, k + 1 : k + 3] = old.X[:, :2], old.X[:, before + 1 : before + 3]
-    for v in range(len(curve.p)):
-        p, X = curve.p[v], curve.X[v]
-        for end, tip, i in ((0, 1, 0), (k + 2, k + 1, k - 1)):  # handles are at most half as long as their chord
-            x, y = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
-            size, own = length(x, y), length(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
+def without(vertices: tuple[FloatArray, FloatArray], i: int, closed: int) -> tuple[FloatArray, FloatArray]:
+    """Vertices and tips without vertex i."""
+    p, tips = vertices
+    masters, n = p.shape[0], p.shape[1] - 1
+    fewer = np.empty((masters, n, 2))
+    for v in range(masters):
+        for j in range(n):
+            for axis in range(2):
+                fewer[v, j, axis] = p[v, j if j < i else j + 1, axis]
+    return fewer, tips if closed else shortened(p, tips, fewer)
+
+
+@compiled
+def shortened(old: FloatArray, tips: FloatArray, p: FloatArray) -> FloatArray:
+    """The tips of an arc's handles for other vertices between its ends: at most half as long as their chord."""
+    found = np.empty((len(p), 2, 2))
+    for v in range(len(p)):
+        for end, at, beside in ((0, 0, 1), (1, p.shape[1] - 1, p.shape[1] - 2)):
+            before = end * (old.shape[1] - 1)
+            x, y = tips[v, end, 0] - old[v, before, 0], tips[v, end, 1] - old[v, before, 1]
+            size, own = length(x, y), length(p[v, beside, 0] - p[v, at, 0], p[v, beside, 1] - p[v, at, 1])
             share = min(1.0, 0.5 * own / size) if size > 0 else 1.0
-            X[tip, 0], X[tip, 1] = X[end, 0] + share * x, X[end, 1] + share * y
+            found[v, end, 0], found[v, end, 1] = old[v, before, 0] + share * x, old[v, before, 1] + share * y
+    return found
 
 
 @compiled
-def keep(fit: Fit) -> None:
-    """Keep the curve, which passed, as the best so far, and estimate what it costs to take out each vertex.
+def removal_costs(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed: int) -> FloatArray:
+    """(k,) estimates of what it costs to take out each vertex of a curve that passed; infinite for an arc's end.
 
     That is the jump of the third derivative at its knot, and the error.
     """
-    curve, k, h = fit.curve, fit.curve.size[0], fit.curve.h
-    copy_curve(curve, fit.best)
-    errors = span_errors(fit.rows, k)
-    for i in range(1 - curve.size[1], k):
+    k = len(errors)
+    costs = np.full(k, np.inf)
+    for i in range(1 - closed, k):
         last = i - 1 if i > 0 else k - 1
         before, after = h[i + 1], h[i + 2]
         reach = before * after / (before + after)
-        fit.costs[i] = 0.0
-        for v in range(len(curve.b)):
-            b = curve.b[v]
+        costs[i] = 0.0
+        for v in range(len(beziers)):
+            b = beziers[v]
             _, _, dx, dy, _, _ = jet(b, i, 0.0)
             speed = max(length(dx, dy), 1e-12)
             nx, ny = -dy / speed, dx / speed
-            jump = third_along(b, i, nx, ny) / after**3 - third_along(b, last, nx, ny) / before**3
-            fit.costs[i] = max(fit.costs[i], abs(jump) * reach**3 / 6 + max(errors[last], errors[i]) / 4)
+            jump = third_along(b, i, nx, ny) / (after * after * after)
+            jump -= third_along(b, last, nx, ny) / (before * before * before)
+            cost = abs(jump) * (reach * reach * reach) / 6 + max(errors[last], errors[i]) / 4
+            costs[i] = max(costs[i], cost)
+    return costs

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import put
 from ...compiled import compiled
 from ...curves.cubics import bernstein, jet, length_table, turns
 from ...outlines.segments import farthest_joint, is_backward, lasting
@@ -65,11 +66,11 @@ def canonical_contours(given: FloatArray, begins: IntArray) -> CanonicalContours
         for v in range(K):
             own = np.abs(turns(chain[v], 0.0))
             for j in range(m):
-                cubics[(at + j) * K + v] = chain[v, j]
+                put(chain[v, j], cubics[(at + j) * K + v])
                 angles[at + j] = max(angles[at + j], own[j])
             own = length_table(chain[v], WEIGHTS)
             if K == 1:
-                table[:] = own
+                put(own, table)
             else:
                 for i in range(m * TABLE):
                     step = own[i + 1] - own[i]

@@ -180,4 +180,5 @@ def fair(
                     if moving[span]:
                         points[j, 0], points[j, 1] = x, y
             if np.isfinite(points).all():  # or else the curve has no speed somewhere, as where a contour collapses
-                moved[a:b, 2 * v : 2 * v + 2] = points
+                for j in range(n):
+                    moved[a + j, 2 * v], moved[a + j, 2 * v + 1] = points[j, 0], points[j, 1]

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ...arrays import ascending, grown
+from ...arrays import ascending, grown, put
 from ...compiled import compiled
 from ...curves.cubics import extent
 from ...curves.nearest import near_places
@@ -67,7 +67,7 @@ def appended(values: FloatArray, count: int, part: FloatArray) -> FloatArray:
     """An array whose first ``count`` values are in use, or a larger one, with more after these."""
     stop = count + len(part)
     values = grown(values, stop)
-    values[count:stop] = part
+    put(part, values[count:stop])
     return values
 
 
@@ -78,7 +78,7 @@ def polygons(contours: CanonicalContours, which: IntArray, places: FloatArray, o
     points = np.empty((len(places), 2 * K))
     for i in range(len(which)):
         a, b = offsets[i], offsets[i + 1]
-        points[a:b] = points_at(chain_of(contours, which[i]), K, places[a:b])
+        put(points_at(chain_of(contours, which[i]), K, places[a:b]), points[a:b])
     return points
 
 

@@ -1,0 +1,200 @@
+"""Vertices of a spline that move to where they serve best: one kernel of steps of Gauss and Newton.
+
+After each step a few warm passes of variant 2 put the curve through the moved vertices again. What counts is a cold run
+from the vertices alone, as the interpolation that is written makes it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...compiled import compiled
+from ...curves.cubics import length
+from ...intrinsics import borrowed, keep_alive
+from ...types import FloatArray, IntArray
+from .cubics import limited
+from .feet import copy_rows, empty_rows, measure, span_errors
+from .spline_curve import (
+    LONGEST_HANDLE,
+    SHORTEST_HANDLE,
+    Curve,
+    begun,
+    copy_curve,
+    empty_curve,
+    hold_tied,
+    interpolate_cold,
+    iterate,
+    result_of,
+    set_knots,
+)
+from .spline_equations import (
+    LARGEST_RATIO,
+    add_rows,
+    differentiate,
+    knots_per_step,
+    objective,
+    solve_step,
+    system_of,
+)
+
+FAILURES = 4
+"""Steps that fail in a row before a fit is given up."""
+
+
+@compiled
+def move_vertices(
+    vertices: tuple[FloatArray, FloatArray], closed: int, outline: tuple[FloatArray, FloatArray, IntArray],
+    limits: tuple[float, float, float], rounds: int, i: int, reach: int,
+) -> tuple[float, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Move the vertices up to ``reach`` on either side of vertex i until all rows are near enough on a cold run.
+
+    Args:
+        vertices: (K, n, 2) of the curve, and (K, 2, 2) the tips of an arc's end handles.
+        outline: ``Q``, ``directions`` and ``free`` of :class:`.feet.Samples`.
+        limits: how near the samples have to be; margin and residual of the interpolation. rounds: most steps.
+
+    Returns:
+        The largest distance of a cold run that passed; else the least one seen, of a warm run, and more than the limit:
+        infinite if variant 2 finds no curve. Then of that curve the vertices and tips, the Bézier points (K, k, 4, 2),
+        the knot intervals as :class:`.spline_curve.Curve` has them, and (k,) the largest distance in each span.
+    """
+    (samples, directions, free), (near, margin, residual) = outline, limits
+    masters, n = samples.shape[0], samples.shape[1]
+    first = begun(vertices[0], vertices[1], closed)
+    k = first.size[0]
+    owned = (
+        first, empty_curve(masters, k, closed), empty_rows(masters, n), empty_rows(masters, n),
+        system_of(masters, k, closed, i, reach),
+    )  # fmt: skip
+    curve, trial, rows, tried, system = borrowed(owned)
+    hold_tied(curve, directions, free)
+    afresh, error, passed, wobble, damping = (False, rows.span, rows.x), np.inf, False, 0.0, 1e-2
+    if interpolate_cold(curve, margin, residual) < np.inf:
+        error = measure(samples, curve.b, curve.h, curve.size, near, afresh, rows)
+        wobble = _wobble_weight(curve.h, k)
+    else:
+        rounds = -1
+    for m in range(rounds + 1):
+        if error <= near and _is_graded(curve.h, curve.size):
+            copy_curve(curve, trial)
+            if interpolate_cold(trial, margin, residual) < residual:
+                copy_curve(trial, curve)
+                error = measure(samples, curve.b, curve.h, curve.size, near, afresh, rows)
+                passed = error <= near
+        if passed or m == rounds:
+            break
+        minimax, failures, new = m >= 2, 0, np.inf
+        differentiate(curve, system)
+        add_rows(rows, curve.b, curve.h, system, error, minimax, wobble)
+        old = objective(curve, rows, error, minimax, wobble)
+        while failures < FAILURES:
+            solve_step(curve, system, damping, n, directions, free)
+            share = 0.5 if minimax else 1.0
+            if _advance(curve, trial, system.frames, system.moves, system.step, system.place, share):
+                hold_tied(trial, directions, free)
+                iterate(trial, 0.02 * near, 12)  # enough for the next step
+                new = measure(samples, trial.b, trial.h, trial.size, near, (True, rows.span, rows.x), tried)
+                if objective(trial, tried, error, minimax, wobble) < old:
+                    break
+            failures += 1
+            damping *= 10
+        if failures == FAILURES:
+            break
+        damping /= 4
+        copy_curve(trial, curve)
+        copy_rows(tried, rows)
+        error = new
+    if not passed:
+        error = max(error, np.nextafter(near, np.inf))
+    p, tips, beziers = result_of(curve)
+    errors = span_errors(rows, k)
+    keep_alive(owned)
+    return error, p, tips, beziers, first.h, errors
+
+
+@compiled
+def _wobble_weight(h: FloatArray, k: int) -> float:
+    """Weight of a curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord."""
+    total = 0.0
+    for s in range(k):
+        total += h[s + 2]
+    mean = total / k
+    return 1e-2 * (mean * mean * mean)
+
+
+@compiled
+def _is_graded(h: FloatArray, size: IntArray) -> bool:
+    """Whether adjacent chords have ratios for which Lemma 2 has an interval."""
+    for s in range(1 - size[1], size[0]):
+        a, b = h[s + 1], h[s + 2]
+        if not (a <= LARGEST_RATIO * b and b <= LARGEST_RATIO * a):
+            return False
+    return True
+
+
+@compiled
+def _advance(
+    curve: Curve, trial: Curve, frames: FloatArray, moves: FloatArray, step: FloatArray, place: IntArray, share: float
+) -> bool:  # fmt: skip
+    """Move vertices, knots and control points of a copy of the curve by a share of the step; False if chords vanish.
+
+    A vertex moves across the curve as the curve does at its footpoint.
+    """
+    copy_curve(curve, trial)
+    for v in range(len(step)):
+        _move_points(curve, trial.X[v], trial.p[v], v, (frames[v], moves[v], step[v], place), share)
+    if not set_knots(trial):
+        return False
+    k, closed = curve.size[0], curve.size[1]
+    for v in range(0 if closed else len(step)):
+        p, X, old = trial.p[v], trial.X[v], curve.X[v]
+        for end, tip, i in ((0, 1, 0), (k + 2, k + 1, k - 1)):
+            own = length(p[i + 1, 0] - p[i, 0], p[i + 1, 1] - p[i, 1])
+            if own > 0.0:
+                x, y, size = limited(
+                    old[tip, 0] - old[end, 0], old[tip, 1] - old[end, 1], X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1],
+                    SHORTEST_HANDLE * own, LONGEST_HANDLE * own,
+                )  # fmt: skip
+                X[tip, 0], X[tip, 1] = X[end, 0] + x * size, X[end, 1] + y * size
+    return True
+
+
+@compiled
+def _move_points(
+    curve: Curve, X: FloatArray, p: FloatArray, v: int, by: tuple[FloatArray, FloatArray, FloatArray, IntArray],
+    share: float,
+) -> None:  # fmt: skip
+    """Move control points X and vertices p of master v by a share of the step.
+
+    Args:
+        by: ``frames``, ``moves`` and ``step`` of this master, and ``place``, see :class:`.spline_equations.System`.
+    """
+    frames, moves, step, place = by
+    k, closed, h = curve.size[0], curve.size[1], curve.h
+    for i in range(k + 1 - closed):
+        r = 2 * place[i + 1]
+        if r < 0:
+            continue
+        nu, sigma = share * step[r], share * step[r + 1]
+        if closed or 0 < i < k:
+            # A vertex moves along the curve by this share of its shorter chord at most.
+            most = 0.3 * min(h[i + 1], h[i + 2]) / knots_per_step(curve, v, i)
+            sigma = min(max(sigma, -most), most)
+        step[r], step[r + 1] = nu, sigma
+        for axis in range(2):
+            X[i + 1, axis] += nu * frames[i, axis] + sigma * frames[i, 2 + axis]
+    for i in range(1 - closed, k):
+        s, x = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
+        y, across = 1 - x, 0.0
+        for c in range(4):
+            r = 2 * place[s + c]
+            for u in range(2 if r >= 0 else 0):
+                m, column = moves[s], 2 * c + u
+                for axis in range(2):
+                    d = y * y * (y * m[axis, column] + 3 * x * m[2 + axis, column])
+                    d += x * x * (3 * y * m[4 + axis, column] + x * m[6 + axis, column])
+                    across += step[r + u] * d * frames[i, axis]
+        r = 2 * place[i + 1]
+        along = step[r + 1] if r >= 0 else 0.0
+        for axis in range(2):
+            p[i, axis] += across * frames[i, axis] + along * frames[i, 2 + axis]
