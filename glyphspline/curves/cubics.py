@@ -21,8 +21,6 @@ STEPS = 4
 CLOSE = 1e-6
 """A Newton step shorter than this is the last: the next one would move by its square."""
 
-ONE = np.uint64(1)
-
 
 @inlined
 def square(x: float) -> float:
@@ -193,12 +191,12 @@ def length_table(cubics: FloatArray, weights: FloatArray) -> FloatArray:
     for j in range(m):
         ax, ay, bx, by = cubics[j, 0, 0], cubics[j, 0, 1], cubics[j, 1, 0], cubics[j, 1, 1]
         cx, cy, dx, dy = cubics[j, 2, 0], cubics[j, 2, 1], cubics[j, 3, 0], cubics[j, 3, 1]
-        for i in range(np.uint64(steps + 1)):  # one kind of work a loop, and unsigned: such loops become SIMD
+        for i in range(steps + 1):  # one kind of work a loop: such loops become SIMD
             xs[i] = weights[0, i] * ax + weights[1, i] * bx + weights[2, i] * cx + weights[3, i] * dx
             ys[i] = weights[0, i] * ay + weights[1, i] * by + weights[2, i] * cy + weights[3, i] * dy
-        for i in range(np.uint64(steps)):
-            chords[i] = np.sqrt(square(xs[i + ONE] - xs[i]) + square(ys[i + ONE] - ys[i]))
-        for i in range(np.uint64(steps)):
+        for i in range(steps):
+            chords[i] = np.sqrt(square(xs[i + 1] - xs[i]) + square(ys[i + 1] - ys[i]))
+        for i in range(steps):
             total += chords[i]
-            table[np.uint64(j * steps + 1) + i] = total
+            table[j * steps + 1 + i] = total
     return table

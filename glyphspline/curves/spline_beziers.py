@@ -17,8 +17,10 @@ def spline_beziers(controls: FloatArray, knots: FloatArray, spans: IntArray, clo
             clamped at both ends three more.
         knots: one more than spans of each, none of them multiple. spans: (S,) of each. closed: (S,).
     """
-    K, at, first = controls.shape[1], 0, 0
-    cubics = np.empty((spans.sum(), K, 4, 2))
+    K, at, first, total = controls.shape[1], 0, 0, 0
+    for n in spans:
+        total += n
+    cubics = np.empty((total, K, 4, 2))
     for q in range(len(spans)):
         n, ring = spans[q], closed[q]
         u, b = knots[at + q : at + q + n + 1], cubics[at : at + n]

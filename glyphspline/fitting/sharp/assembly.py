@@ -43,7 +43,7 @@ def put_together(
             control points of an arc or k of a closed curve.
         chords: (P,) the chord of each piece in all masters: what the tangents of an arc of one span go by.
     """
-    P, arcs = len(pieces.spans), int((pieces.spans > 0).sum())
+    P, arcs = len(pieces.spans), np.count_nonzero(pieces.spans > 0)
     segments = np.zeros(P + 1, dtype=np.int64)
     for q in range(P):
         segments[q + 1] = segments[q] + max(pieces.spans[q], 1)

@@ -223,7 +223,7 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
     The outline between two samples is straight to a seventh of the tolerance in every master.
     """
     m = len(degrees)
-    counts = np.empty(m, dtype=np.int64)
+    counts, total = np.empty(m, dtype=np.int64), 0
     for j in range(m):
         most = 2.0 if degrees[j] == 1 else 3.0
         for v in range(len(cubics)):
@@ -236,7 +236,8 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
             wanted = max(size / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
             most = min(max(np.ceil(wanted), most), 40.0)
         counts[j] = int(most)
-    places, at = np.empty(counts.sum() + 1), 0
+        total += counts[j]
+    places, at = np.empty(total + 1), 0
     for j in range(m):
         for i in range(counts[j]):
             places[at] = j + i / counts[j]

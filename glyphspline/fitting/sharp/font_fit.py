@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import ascending
 from ...checks.bends import bend_findings
 from ...checks.kinds import JUMP, KINDS, KINK, LUMP, THRESHOLDS
 from ...checks.segments import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
@@ -85,7 +86,7 @@ def fit_contours(
                 joints = find_joints(chain, own, settings.near, settings.angle, settings.line, settings.c2)
             old = last.cubics[:, last.offsets[c] : last.offsets[c + 1]]
             at = (last.nodes[last.offsets[c] : last.offsets[c + 1]] - k) % m
-            order = np.argsort(at)
+            order = ascending(at.astype(np.float64))
             run, types, nodes, inside = fit_contour(
                 borrowed(chain), own, borrowed(joints), held, borrowed(limits), np.roll(fresh[a:b], -k),
                 old[:, order], at[order],

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...compiled import compiled
-from ...curves.cubics import length
+from ...curves.cubics import length, square
 from ...types import FloatArray, IntArray
 from .corners import turn_between
 from .font_chains import SLIP, Quads, ahead, as_cubics, set_moves, set_nodes
@@ -112,7 +112,8 @@ def off_tangent(q: Quads, w: int, s: int, x: float, y: float, price: float) -> f
     price."""
     T, beyond = q.T[w, s], q.beyond[w, s]
     off, turn = turn_between(x, y, T[0], T[1]), turn_between(x, y, beyond[0], beyond[1])
-    return price * (0.005 * (off / KINK) ** 2 + (max(turn, off) / KINK if is_kink(q, s, turn, length(x, y)) else 0.0))
+    turned = max(turn, off) / KINK if is_kink(q, s, turn, length(x, y)) else 0.0
+    return price * (0.005 * square(off / KINK) + turned)
 
 
 @compiled

@@ -91,7 +91,7 @@ def begin(q: Quads, given: Given, a: int, b: int, level: bool) -> bool:
     first, last = joints.first[a], joints.first[b]
     n, K = last - first, len(samples)
     # Quadratics are short where the outline turns, and none is much longer than its neighbours.
-    sizes, bends, at = np.zeros(n), np.zeros(n + 1), np.zeros(n + 1)
+    sizes, bends, at, total, turn = np.zeros(n), np.zeros(n + 1), np.zeros(n + 1), 0.0, 0.0
     for w in range(K):
         x_before = y_before = 0.0
         for k in range(n):
@@ -101,7 +101,9 @@ def begin(q: Quads, given: Given, a: int, b: int, level: bool) -> bool:
             if k > 0:
                 bends[k] += turn_between(x_before, y_before, x, y)
             x_before, y_before = x, y
-    total, turn = max(sizes.sum(), 1e-12), max(bends.sum(), 1e-6)
+    for k in range(n):
+        total, turn = total + sizes[k], turn + bends[k]
+    total, turn = max(total, 1e-12), max(turn, 1e-6)
     for k in range(n):
         share = sizes[k] / total
         at[k + 1] = at[k] + np.sqrt((bends[k] + bends[k + 1]) / 2 / turn * share) + 0.1 * share

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled, inlined
-from ...curves.cubics import length
+from ...curves.cubics import length, square
 from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints
@@ -69,7 +69,8 @@ def end_curvature(p: FloatArray, end: int) -> float:
     """The curvature at the beginning (``end`` 0) or the end (1) of a cubic (4, 2); not finite without a handle."""
     sign, i, j, k = 1 - 2 * end, 3 * end, 1 + end, 2 - end
     ax, ay, bx, by = p[j, 0] - p[i, 0], p[j, 1] - p[i, 1], p[k, 0] - p[j, 0], p[k, 1] - p[j, 1]
-    return sign * (2 / 3 * (ax * by - ay * bx) / length(ax, ay) ** 3)
+    size = length(ax, ay)
+    return sign * (2 / 3 * (ax * by - ay * bx) / (size * size * size))
 
 
 @compiled
@@ -233,7 +234,7 @@ def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, number:
             )
             value, sign = other, 1.0
         size = length(ax, ay)
-        f = 2 / 3 * sign / size**3
+        f = 2 / 3 * sign / (size * size * size)
         for u in range(15):
             if side == 0:
                 dax, day = spread[2, 0, u] - spread[1, 0, u], spread[2, 1, u] - spread[1, 1, u]
@@ -265,14 +266,14 @@ def damp(run: Run, A: FloatArray, number: IntArray, tolerance: float) -> None:
             continue
         a, b = handles_at(run, k)
         size = max(min(a, b), tolerance)
-        A[at, at] += 0.02 / (0.2 * size) ** 2
-        A[at + 1, at + 1] += 0.02 / tolerance**2
-        A[at + 2, at + 2] += 0.02 / 0.03**2
+        A[at, at] += 0.02 / square(0.2 * size)
+        A[at + 1, at + 1] += 0.02 / square(tolerance)
+        A[at + 2, at + 2] += 0.02 / square(0.03)
         for side, own in ((3, a), (4, b)):
-            A[at + side, at + side] += 0.02 / (0.2 * max(own, tolerance)) ** 2
+            A[at + side, at + side] += 0.02 / square(0.2 * max(own, tolerance))
         if run.kind[k] == FIXED:
             for side in range(5):
-                A[at + side, at + side] += 0.02 / (0.2 * max(a, b, tolerance)) ** 2
+                A[at + side, at + side] += 0.02 / square(0.2 * max(a, b, tolerance))
 
 
 @inlined

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled, inlined
-from ...curves.cubics import hidden_extrema, length
+from ...curves.cubics import hidden_extrema, length, square
 from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray
 from .corners import Joints
@@ -108,7 +108,7 @@ def turn_cost(ax: float, ay: float, bx: float, by: float) -> float:
     if along <= 0.0:
         return 1e4 * TURN_PRICE
     turn = abs(ax * by - ay * bx) / along
-    return 0.3 * (turn / TURN) ** 2 + (TURN_PRICE * turn / TURN if turn > TURN else 0.0)
+    return 0.3 * square(turn / TURN) + (TURN_PRICE * turn / TURN if turn > TURN else 0.0)
 
 
 @compiled
@@ -128,7 +128,7 @@ def joint_cost(P: FloatArray, s: int, q: int, ease: float, slack: float, em: flo
     if cost >= least:
         return cost
     jump = max(min(end_jump(P[s], P[q], em), 1.0) - slack, 0.0)
-    return cost + ease * (0.25 * (jump / JUMP) ** 2 + (JUMP_PRICE if jump > JUMP else 0.0))
+    return cost + ease * (0.25 * square(jump / JUMP) + (JUMP_PRICE if jump > JUMP else 0.0))
 
 
 @inlined
@@ -354,7 +354,7 @@ def side_places(
             ax, ay, ex, ey = own[h, 0] - own[n, 0], own[h, 1] - own[n, 1], own[b, 0] - own[h, 0], own[b, 1] - own[h, 1]
             if ax * (p[h, 0] - p[n, 0]) + ay * (p[h, 1] - p[n, 1]) < 1.0:
                 continue
-            other = 2 / 3 * (bx * (own[h, 1] - own[b, 1]) - by * (own[h, 0] - own[b, 0])) / size**3
+            other = 2 / 3 * (bx * (own[h, 1] - own[b, 1]) - by * (own[h, 0] - own[b, 0])) / (size * size * size)
             most = max(abs(other), abs(beyond))
             jump = most * em > 1.0 and abs(other + beyond) > 0.1 * most
             if code < 0:
@@ -364,7 +364,8 @@ def side_places(
                 continue
             cost = squares_of_two(own[1:3], exact[1:3], part, base)
             if cost < dearest and hidden_extrema(own) <= run.extrema[s]:
-                found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / length(ax, ay) ** 3
+                arm = length(ax, ay)
+                found[count, 0], found[count, 1] = cost, 2 / 3 * (ax * ey - ay * ex) / (arm * arm * arm)
                 found[count, 2], found[count, 3] = ax, ay
                 found[count, 4], found[count, 5] = own[h, 0], own[h, 1]
                 found[count, 6], found[count, 7] = own[b, 0], own[b, 1]

@@ -285,7 +285,7 @@ def _stored(glyph: StoredGlyph, redrawn: Mapping[str, Redrawn], name: str, toler
 
 
 def _bounded(bound: float, tolerance: float) -> dict[str, Any]:
-    return {"bound": rounded_up(bound, 6) if isfinite(bound) else None, "within_tolerance": bound <= tolerance}
+    return {"bound": rounded_up(bound, 6) if isfinite(bound) else None, "within_tolerance": bool(bound <= tolerance)}
 
 
 def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> str:
