@@ -1,25 +1,24 @@
 """Cutting contours at their hard joints, and fitting what lies between them: lines, cubics and splines.
 
 Between two hard joints there is one C2 spline. A contour without hard joints is one closed C2 spline. Most stretches of
-a typeface need a line or a single cubic; one call fits all of a contour, and :mod:`.spline_search` the others. Where a
-stretch has corners that do not show, one spline and splines between all of these corners are both fitted, and the
-cheaper is kept.
+a typeface need a line or a single cubic; one call fits these of all contours, and :mod:`.spline_search` the others.
+Where a stretch has corners that do not show, one spline and splines between all of these corners are both fitted, and
+the cheaper is kept.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import split
-from ...outlines.contour_arrays import ContourArrays, offsets_of
+from ...outlines.contour_arrays import ContourArrays
 from ...outlines.segments import farthest_joint, is_backward, lasting
 from ...types import BoolArray, FloatArray, IntArray
-from .corners import JointArrays, Joints, find_joints
+from .corners import Joints, find_joints
 from .cubics import fit_between, is_straight
 from .pieces import Pieces, joined, part, source_pieces, turned
 from .settings import Settings
@@ -112,25 +111,22 @@ def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: Settings
     Args:
         cubics: (K, m, 4, 2) the contours' segments in each master. contours: their degrees and offsets.
     """
-    masters, near = len(cubics), settings.near
-    own, kinds, ways = [np.empty((masters, 0, 4, 2))], [np.empty(0, dtype=np.int64)], []
+    near, how = settings.near, (settings.angle, settings.line, settings.c2)
+    *arrays, simple, ways, ends, enough = simplest(
+        cubics, contours.degrees, contours.offsets, near, *how, settings.cubic_rounds
+    )
+    chains, pieces = Chains(*arrays), Pieces(*simple)
     parts: list[Pieces] = []
-    for c, (a, b) in enumerate(pairwise(contours.offsets.tolist())):
-        chain, degrees, flipped, joints = prepared(
-            np.ascontiguousarray(cubics[:, a:b]),
-            contours.degrees[a:b],
-            near,
-            settings.angle,
-            settings.line,
-            settings.c2,
-        )
-        parts += fit_contour(joints, c, settings)
-        own.append(chain[:, ::-1, ::-1] if flipped else chain)
-        kinds.append(degrees[::-1] if flipped else degrees)
-        ways.append(flipped)
-    offsets = offsets_of([len(degrees) for degrees in kinds[1:]])
-    chains = Chains(np.concatenate(own, axis=1), np.concatenate(kinds), offsets, np.array(ways, dtype=np.bool_))
-    pieces = turned(joined(parts, masters), offsets, chains.flipped)
+    kept = 0
+    for c in np.flatnonzero(~enough).tolist():
+        a, b = ends[c : c + 2].tolist()
+        own = slice(*contours.offsets[c : c + 2].tolist())
+        joints = prepared(np.ascontiguousarray(cubics[:, own]), contours.degrees[own], near, *how)[-1]
+        parts += [part(pieces, kept, a), *fit_contour(joints, part(pieces, a, b), ways[a:b], settings)]
+        kept = b
+    if kept:
+        pieces = joined([*parts, part(pieces, kept, len(ways))], len(cubics))
+    pieces = turned(pieces, chains.offsets, chains.flipped)
     poor = ~(pieces.errors <= near)
     if poor.any():
         pieces, _ = _replaced(pieces, poor, chains.source)
@@ -150,13 +146,16 @@ def _replaced(pieces: Pieces, which: BoolArray, other: Callable[[Pieces], Pieces
     return joined(found, pieces.vertices.shape[1]), np.concatenate(same)
 
 
-def fit_contour(joints: Joints, c: int, settings: Settings) -> list[Pieces]:
-    """Lines and arcs from joint to joint of contour c, in the direction in which it is fitted."""
-    near = settings.near
-    *simple, ways, enough = simplest(joints[:], near, settings.cubic_rounds)
-    pieces, found, kept = Pieces(np.full(len(ways), c), *simple), [], 0
+def fit_contour(joints: Joints, pieces: Pieces, ways: IntArray, settings: Settings) -> list[Pieces]:
+    """A contour's lines and arcs, in the direction in which it is fitted: splines where what is simplest is not near
+    enough.
+
+    Args:
+        pieces, ways: of it, from :func:`simplest`.
+    """
+    near, found, kept = settings.near, list[Pieces](), 0
     parts: list[Pieces] = []
-    for q in () if enough else np.flatnonzero(~(pieces.errors <= near) | (ways > 0)).tolist():
+    for q in np.flatnonzero(~(pieces.errors <= near) | (ways > 0)).tolist():
         piece = part(pieces, q, q + 1)
         if not piece.errors[0] <= near:
             piece = fit_spline(joints, piece, near, settings, False)
@@ -182,65 +181,91 @@ def _cheaper(parts: list[Pieces], whole: Pieces, near: float) -> list[Pieces]:
 
 
 @compiled
-def simplest(around: JointArrays, near: float, rounds: int) -> tuple[Any, ...]:
-    """A line or a cubic for each stretch of a contour, with its error; where a stretch has corners that do not show,
-    for each part of it between them, and then for the whole.
+def simplest(
+    cubics: FloatArray, degrees: IntArray, offsets: IntArray, near: float, angle: float, line: float, c2: bool,
+    rounds: int,
+) -> tuple[Any, ...]:  # fmt: skip
+    """All contours as they are cut, with a line or a cubic for each stretch, and its error; where a stretch has corners
+    that do not show, for each part of it between them, and then for the whole.
 
     The error is infinite for a closed curve, and beside a tied joint, where the cubics of the masters have to agree:
     these are for splines, which may have one span.
 
     Args:
-        around: the arrays of the contour's :class:`.corners.Joints`. near: how near samples have to be. rounds: of a
-            cubic.
+        cubics: (K, m, 4, 2), degrees, offsets: of contours. near: how near samples have to be. angle, line, c2: see
+            :func:`.corners.find_joints`. rounds: of a cubic.
 
     Returns:
-        The arrays of :class:`.pieces.Pieces`, but for the contour; (P,) the ways: PART, WHOLE, or 0 where there is one;
-        and whether all that was tried is near enough, in one way.
+        The arrays of :class:`Chains`; those of :class:`.pieces.Pieces`; (P,) the ways: PART, WHOLE, or 0 where there is
+        one; (C + 1,) where the pieces of each contour begin; (C,) whether all of them are near enough, in one way.
     """
-    joints = Joints(*around)
-    m, masters, count = len(joints.line), len(joints.samples), 0
-    ends, ways = np.empty((2 * m, 2), np.int64), np.zeros(2 * m, np.int64)
-    i = 0
+    K, C, most = len(cubics), len(offsets) - 1, 2 * len(degrees)  # a segment may be cut in two, and be tried twice
+    own, kinds, starts = np.empty((K, most, 4, 2)), np.empty(most, np.int64), np.zeros(C + 1, np.int64)
+    flipped, enough, firsts = np.zeros(C, np.bool_), np.ones(C, np.bool_), np.zeros(C + 1, np.int64)
+    P = 2 * most
+    contour, joints, ways = np.empty(P, np.int64), np.empty((P, 2), np.int64), np.zeros(P, np.int64)
+    spans, closed, errors = np.empty(P, np.int64), np.zeros(P, np.int64), np.zeros(P)
+    vertices, places, tangents = np.empty((2 * P, K, 2)), np.empty(2 * P), np.zeros((P, K, 2, 2))
+    count = 0
+    for c in range(C):
+        a, b, at = offsets[c], offsets[c + 1], starts[c]
+        chain, types, turns, around = prepared(cubics[:, a:b].copy(), degrees[a:b], near, angle, line, c2)
+        m = len(types)
+        flipped[c], starts[c + 1] = turns, at + m
+        for j in range(m):
+            s = m - 1 - j if turns else j
+            kinds[at + j] = types[s]
+            for v in range(K):
+                for r in range(4):
+                    k = 3 - r if turns else r
+                    own[v, at + j, r, 0], own[v, at + j, r, 1] = chain[v, s, k, 0], chain[v, s, k, 1]
+        last = stretches(around, joints, ways, count)
+        for q in range(count, last):
+            i, j = joints[q, 0], joints[q, 1]
+            ring = i == 0 and j == m and not around.hard[0]
+            straight = around.line[i] or (not ring and around.corner[i] and around.corner[j] and is_straight(
+                around.samples, around.first[i], around.first[j], near
+            ))  # fmt: skip
+            if not straight:
+                errors[q] = np.inf
+                if not (ring or around.tied[i] or around.tied[j]):
+                    errors[q] = fit_between(around, i, j, near, rounds, tangents[q])
+            contour[q], spans[q], closed[q] = c, 0 if straight else 1, 1 if ring else 0
+            for end in range(2):
+                places[2 * q + end] = joints[q, end]
+                for v in range(K):
+                    for axis in range(2):
+                        vertices[2 * q + end, v, axis] = around.samples[v, around.first[joints[q, end]], axis]
+            enough[c] = enough[c] and errors[q] <= near and ways[q] == 0
+        firsts[c + 1] = count = last
+    pieces = (
+        contour[:count], joints[:count], spans[:count], closed[:count], 2 * np.arange(count + 1),
+        vertices[: 2 * count], places[: 2 * count], tangents[:count], errors[:count],
+    )  # fmt: skip
+    total = starts[C]
+    return own[:, :total].copy(), kinds[:total], starts, flipped, pieces, ways[:count], firsts, enough
+
+
+@compiled
+def stretches(around: Joints, joints: IntArray, ways: IntArray, count: int) -> int:
+    """Write the stretches of a contour into rows from ``count`` on, and ways to fit them; return where they end."""
+    m, i = len(around.line), 0
     while i < m:
         j, cut = i + 1, False
-        while j < m and not joints.hard[j]:
-            cut = cut or joints.corner[j]
+        while j < m and not around.hard[j]:
+            cut = cut or around.corner[j]
             j += 1
-        cut = cut and joints.hard[0] and not joints.line[i]
+        cut = cut and around.hard[0] and not around.line[i]
         a = i
         for b in range(i + 1, j + 1):
-            if b == j or (cut and joints.corner[b]):
-                ends[count, 0], ends[count, 1], ways[count] = a, b, PART if cut else 0
+            if b == j or (cut and around.corner[b]):
+                joints[count, 0], joints[count, 1], ways[count] = a, b, PART if cut else 0
                 count, a = count + 1, b
         if cut:
-            ends[count, 0], ends[count, 1], ways[count] = i, j, WHOLE
+            joints[count, 0], joints[count, 1], ways[count] = i, j, WHOLE
             count += 1
         i = j
-    vertices, places, tangents = (
-        np.empty((2 * count, masters, 2)),
-        np.empty(2 * count),
-        np.zeros((count, masters, 2, 2)),
-    )
-    spans, closed, errors, enough = np.empty(count, np.int64), np.zeros(count, np.int64), np.zeros(count), True
-    for q in range(count):
-        i, j = ends[q, 0], ends[q, 1]
-        ring = i == 0 and j == m and not joints.hard[0]
-        line = joints.line[i] or (not ring and joints.corner[i] and joints.corner[j] and is_straight(
-            joints.samples, joints.first[i], joints.first[j], near
-        ))  # fmt: skip
-        if not line:
-            errors[q] = np.inf
-            if not (ring or joints.tied[i] or joints.tied[j]):
-                errors[q] = fit_between(joints, i, j, near, rounds, tangents[q])
-        spans[q], closed[q] = 0 if line else 1, 1 if ring else 0
-        for end in range(2):
-            places[2 * q + end] = ends[q, end]
-            for v in range(masters):
-                for axis in range(2):
-                    vertices[2 * q + end, v, axis] = joints.samples[v, joints.first[ends[q, end]], axis]
-        enough = enough and errors[q] <= near and ways[q] == 0
-    starts = 2 * np.arange(count + 1)
-    return ends[:count], spans, closed, starts, vertices, places, tangents, errors, ways[:count], enough
+    return count
 
 
 def refit(
