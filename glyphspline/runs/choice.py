@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import cache
+from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
@@ -45,13 +46,14 @@ def costs() -> dict[str, Cost]:
 
 
 def least(kinds: Iterable[str], processes: int) -> float:
-    """Units of work from which on compiling some kinds first takes less time than plain Python.
+    """Units of work from which on compiling some kinds first takes less time than plain Python, if ever.
 
     A kind is compiled by one process, and work is done by all.
     """
     own = [costs()[kind] for kind in kinds]
     compiling = max(sum(one.compiling for one in own), processes * max(one.compiling for one in own))
-    return compiling / sum(one.plain - one.compiled for one in own)
+    saved = sum(one.plain - one.compiled for one in own)
+    return compiling / saved if saved > 0 else inf
 
 
 @dataclass

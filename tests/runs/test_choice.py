@@ -7,6 +7,7 @@ from concurrent.futures import Executor, Future
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import pytest
 
 from glyphspline import code_files
@@ -18,7 +19,7 @@ from glyphspline.runs.schedule import kinds_for
 from glyphspline.runs.small_runs import WORK
 from glyphspline.runs.spec import RunSpec
 
-COSTS = {"a": Cost(100.0, 1.1, 0.1), "b": Cost(20.0, 0.6, 0.1)}
+COSTS = {"a": Cost(100.0, 1.1, 0.1), "b": Cost(20.0, 0.6, 0.1), "c": Cost(10.0, 0.0, 0.0)}
 """Compiling a takes as long as 100 units as plain Python, and both as long as 80."""
 
 
@@ -60,7 +61,8 @@ def nothing_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kinds", "size", "expected"), [(["a"], 1, 100.0), (["a", "b"], 1, 80.0), (["b"], 2, 80.0), (["a", "b"], 2, 133.33)]
+    ("kinds", "size", "expected"),
+    [(["a"], 1, 100.0), (["a", "b"], 1, 80.0), (["b"], 2, 80.0), (["a", "b"], 2, 133.33), (["c"], 1, np.inf)],
 )
 def test_the_least_work_that_repays_compiling(kinds: list[str], size: int, expected: float) -> None:
     """A kind is compiled by one process, while the work is shared by all."""
