@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ast
 import pathlib
+import sys
 from importlib import import_module
 from typing import Any
 
+from . import hooks
 from ._version import __version__ as __version__
 
 _LISTED = ast.parse(pathlib.Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")).body
@@ -21,9 +23,17 @@ __all__ = [*_HOMES]
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    import_module(".notebook", __name__).install()
-    value = getattr(import_module(_HOMES[name], __name__), name)
+        if name.startswith("_") or (value := hooks.find("names", name)) is None:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        return value
+    try:
+        value = getattr(import_module(_HOMES[name], __name__), name)
+    except ModuleNotFoundError as error:
+        if not hooks.is_away(error):
+            raise
+        raise AttributeError(f"{__name__}.{name} needs a plug-in that is not there: {error.name}") from error
+    if "IPython" in sys.modules and (install := hooks.find("services", "notebook")):
+        install()
     globals()[name] = value
     return value
 

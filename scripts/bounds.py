@@ -26,7 +26,7 @@ from fontTools.ttLib import TTFont
 
 import glyphspline as gs
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
 from tests.farthest import cubics, farthest
 

@@ -31,7 +31,7 @@ from glyphspline.curves.integrals import area
 from glyphspline.outlines.outline import Contour, Contours
 from glyphspline.outlines.polygons import flattened, polygons_of
 from glyphspline.outlines.segments import all_cubics
-from glyphspline.writers.dxf import holes, without_spurs
+from glyphspline.plugins.cad.dxf import holes, without_spurs
 from glyphspline.writers.settings import DxfKind, Settings
 
 from .survey import parser

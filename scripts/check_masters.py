@@ -19,12 +19,12 @@ import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic, derivative_points, signed_curvature
 from glyphspline.curves.cubics import turns
 from glyphspline.curves.fairness import TURN, curvatures, extrema_of
-from glyphspline.fitting.convert_masters import MastersResult, convert_masters
 from glyphspline.fitting.measures import CORNER, extrema_floor
-from glyphspline.runs.jobs.masters import redrawn_glyph
+from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
+from glyphspline.plugins.masters.convert_masters import MastersResult, convert_masters
+from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.types import BoolArray, FloatArray
-from glyphspline.writers.font.master_deltas import Redrawn
-from glyphspline.writers.font.variable_font import to_variable_font
 
 from .survey import SegmentPen, distances, parser, sampled
 

@@ -23,13 +23,13 @@ from fontTools.ttLib import TTFont
 from fontTools.ufoLib import UFOReader
 from scipy.ndimage import label
 
-from glyphspline.checks.check import check_many
-from glyphspline.checks.kinds import MENDED
 from glyphspline.curves.bezier import evaluate
-from glyphspline.mending.ink import INK
+from glyphspline.outlines.flaws.kinds import MENDED
+from glyphspline.plugins.checks.check import check_many
+from glyphspline.plugins.mending.ink import INK
+from glyphspline.plugins.mending.job import MendedSource, mend_source
 from glyphspline.readers import Font, open_source
 from glyphspline.readers.ufo import Ufo
-from glyphspline.runs.jobs.mend import MendedSource, mend_source
 from glyphspline.types import BoolArray, FloatArray
 
 from .survey import SegmentPen, parser, table

@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.checks.kinds import THRESHOLDS
-from glyphspline.mending.state import Change, State
+from glyphspline.outlines.flaws.kinds import THRESHOLDS
+from glyphspline.plugins.masters.designspace import Designspace
+from glyphspline.plugins.mending.job import mend_source
+from glyphspline.plugins.mending.state import Change, State
 from glyphspline.readers import Font, open_source
-from glyphspline.readers.designspace import Designspace
 from glyphspline.readers.ufo import Ufo
-from glyphspline.runs.jobs.mend import mend_source
 
 from .survey import parser, table
 

@@ -25,11 +25,11 @@ from fontTools.subset import Options as Subset
 from fontTools.subset import Subsetter
 from fontTools.ttLib import TTFont
 
-from glyphspline.checks.finding import Finding
-from glyphspline.checks.kinds import KINDS, MENDED
-from glyphspline.checks.on_axes import OF_CONTOURS
+from glyphspline.outlines.flaws.kinds import KINDS, MENDED
+from glyphspline.plugins.checks.finding import Finding
+from glyphspline.plugins.checks.job import check_font
+from glyphspline.plugins.masters.on_axes import OF_CONTOURS
 from glyphspline.readers import open_font
-from glyphspline.runs.jobs.check import check_font
 from glyphspline.types import FloatArray
 
 from .survey import faces, parser, table

@@ -37,11 +37,11 @@ from fontTools.pens.ttGlyphPen import TTGlyphPen
 from matplotlib import get_data_path
 
 import glyphspline as gs
-from glyphspline.checks.check import check_many
-from glyphspline.checks.finding import Finding
-from glyphspline.checks.kinds import KINDS, MENDED
 from glyphspline.curves.bezier import cross, derivative_points, evaluate, signed_curvature, split
+from glyphspline.outlines.flaws.kinds import KINDS, MENDED
 from glyphspline.outlines.outline import Contour
+from glyphspline.plugins.checks.check import check_many
+from glyphspline.plugins.checks.finding import Finding
 from glyphspline.types import FloatArray
 
 from .drawn_fonts import begun, ended

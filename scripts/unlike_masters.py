@@ -38,10 +38,10 @@ from scipy.spatial import cKDTree
 
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic, evaluate, split
-from glyphspline.matching.match import match_masters
 from glyphspline.outlines.joins import joins
 from glyphspline.outlines.masters import DesignAxis, Masters
 from glyphspline.outlines.sampling import CORNER_ANGLE
+from glyphspline.plugins.masters.matching.match import match_masters
 from glyphspline.types import FloatArray
 
 from .survey import SegmentPen, distances, parser, surveyed, table

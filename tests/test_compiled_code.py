@@ -277,7 +277,7 @@ def test_ctrl_c_ends_a_compilation(tmp_path: Path) -> None:
 def test_a_command_with_code_runs_nothing_as_python(tmp_path: Path) -> None:
     words = [*CONVERT[2:], "--jobs", "0", "--out", str(tmp_path / "out")]
     code = (
-        "from glyphspline import compiled\nfrom glyphspline.cli.commands import app\n"
+        "from glyphspline import compiled\nfrom glyphspline.cli.app import app\n"
         f"app({words!r}, standalone_mode=False)\nprint(compiled._spent)"
     )
     found = run("-c", code)

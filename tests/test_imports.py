@@ -144,7 +144,7 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
 def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     code = (
-        "import sys, glyphspline.cli.commands, glyphspline.runs.jobs.check, glyphspline.runs.jobs.convert\n"
+        "import sys, glyphspline.cli.app, glyphspline.runs.jobs.check, glyphspline.runs.jobs.convert\n"
         f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
     )
@@ -174,7 +174,7 @@ def test_a_command_leaves_heavy_libraries_to_its_workers(
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     filled = [word.replace("FONT", str(font)).replace("OUT", str(tmp_path)) for word in arguments]
     code = (
-        "import sys\nfrom glyphspline.cli.commands import app\n"
+        "import sys\nfrom glyphspline.cli.app import app\n"
         f"if __name__ == '__main__':\n    status = app({filled!r}, standalone_mode=False)\n"
         "    print('loaded', *sorted({name.split('.')[0] for name in sys.modules}))\n"
         "    sys.exit(status)"

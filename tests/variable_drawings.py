@@ -15,8 +15,8 @@ from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.cubics import turns
 from glyphspline.outlines.masters import MasterContour, Masters
+from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
 from glyphspline.types import BoolArray, FloatArray
-from glyphspline.writers.font.master_deltas import Redrawn
 
 CORNER = np.radians(12)
 

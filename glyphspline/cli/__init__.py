@@ -8,6 +8,6 @@ import gc
 def main() -> None:
     """Run the command. Imports happen here because worker processes import this module again without needing them."""
     gc.disable()  # imports make no garbage; commands collect it from where they begin
-    from . import commands
+    from . import app
 
-    commands.main()
+    app.main()

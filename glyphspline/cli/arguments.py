@@ -9,10 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .._version import __version__
-from ..checks.kinds import KINDS, Level
 from ..errors import GlyphsplineError, OptionError
-from ..fields import LOOK, WRITTEN, About, option
-from ..typesetting.setting import Align, Direction
+from ..fields import WRITTEN, About, option
 from .config import settings
 from .groups import natural, place
 from .messages import stop
@@ -21,10 +19,7 @@ if TYPE_CHECKING:
     from ..readers import Selection, Source
 
 GLYPHS = "Which glyphs"
-TEXT = "The text"
 RUN = "The run"
-FOUND = "What is found"
-REPORTED = "What is reported"
 """Headings of groups of options."""
 
 NATURAL, PLACE = {"parser": natural}, {"parser": place}
@@ -41,7 +36,8 @@ def configured(context: typer.Context, path: Path | None) -> Path | None:
     if not context.resilient_parsing:
         named = ((one.opts, str(one.name)) for one in context.command.params)
         try:
-            context.default_map = settings(path, named, context.command.name)
+            command: Any = context.command
+            context.default_map = settings(path, named, command.name, command.own)
         except GlyphsplineError as error:
             stop(str(error))
     return path
@@ -73,12 +69,6 @@ def print_version(wanted: bool) -> None:
     if wanted:
         typer.echo(f"glyphspline {__version__}")
         raise typer.Exit
-
-
-def more_thresholds(context: typer.Context, text: str | None) -> str | None:
-    """Thresholds of the command line after those of a file, which they replace one by one."""
-    before = (context.default_map or {}).get("thresholds")
-    return text if text == before else ",".join(filter(None, [before, text]))
 
 
 Version = Annotated[
@@ -190,87 +180,4 @@ class SingleFonts:
     )  # fmt: skip
     axis: str | None = option(
         None, "Set the axis of such fonts, as wght=300:700, a value for each in turn.", WRITTEN, "TAG=A:B"
-    )
-
-
-@dataclass(frozen=True)
-class TextOptions:
-    """How a text is set on lines, and where it comes from."""
-
-    text_file: Path | None = option(None, "Set the text of a UTF-8 file instead.", TEXT, "FILE")
-    fallbacks: list[Path] | None = option(
-        None, "Use this font for characters that FONT lacks. Repeatable.", TEXT, "FONT", flags="--fallback-font"
-    )
-    features: str = option("", "Switch OpenType features: liga,-kern,ss01=2.", TEXT, "TAG,…")
-    script: str | None = option(None, "Set the script of all text, by ISO 15924: Arab.", TEXT, "CODE")
-    language: str | None = option(None, "Set the language, by BCP 47: de, zh-Hant.", TEXT, "TAG")
-    direction: Direction | None = option(
-        None, "Set the direction; ttb and btt are columns. Without it, that of the first letter.", TEXT
-    )
-    width: str | None = option(
-        None, "Break lines at this width: font units, 12em, or 80mm if --size is given.", TEXT, "LENGTH"
-    )
-    align: Align = option("start", "Align lines; justify widens spaces.", TEXT)
-    line_height: str | None = option(None, "Set the distance of baselines. Without it, the font's.", TEXT, "LENGTH")
-    letter_spacing: str | None = option(None, "Add this space between letters.", TEXT, "LENGTH")
-    cap_height: str | None = option(
-        None, "Set the size by the height of a capital H: 50mm, instead of --size.", LOOK, "LENGTH"
-    )
-    x_height: str | None = option(None, "Set the size by the height of a small x, likewise.", LOOK, "LENGTH")
-    fit_width: str | None = option(None, "Set the size by the width of all ink of the lines: 1200mm.", LOOK, "LENGTH")
-
-
-@dataclass(frozen=True)
-class DrawingOptions:
-    """How drawings of a text are written."""
-
-    format_name: str | None = option(
-        None, "Write this format (curvature, source, …) instead of that of --out's suffix.",
-        WRITTEN, "NAME", flags="--format",
-    )  # fmt: skip
-    each_glyph: bool = option(False, "Write each glyph in SVG as an element with an id, not all as one path.", WRITTEN)
-
-
-@dataclass(frozen=True)
-class CheckOptions:
-    """What ``check`` looks for."""
-
-    kinds: str | None = option(None, f"Look only for {', '.join(kind.name for kind in KINDS)}.", FOUND, "KIND,…")
-    thresholds: str | None = option(
-        None, "Set from which value on each kind counts, as kink=1,short=2: degrees, thousandths of an em, shares.",
-        FOUND, "NAME=VALUE,…", more={"callback": more_thresholds},
-    )  # fmt: skip
-    corner_angle: float | None = option(
-        None, "Count a joint as a corner from this turn on. Without it, 12.", FOUND, "DEGREES"
-    )
-    axis: str | None = option(None, "Look along this axis of a variable font only.", FOUND, "TAG")
-    steps: int | None = option(
-        None, "Look at this number of steps of each axis besides the masters.", FOUND, "N", more=NATURAL
-    )
-
-
-@dataclass(frozen=True)
-class ReportOptions:
-    """What ``check`` makes of its findings."""
-
-    loglevel: Level | None = option(
-        None, "Show findings from this level on. Without it, WARN in tables, INFO in JSON, CSV and HTML.",
-        REPORTED, flags="--loglevel -l", more={"case_sensitive": False},
-    )  # fmt: skip
-    error_level: Level | None = option(
-        None, "Exit with status 1 if there are findings of this level or above.",
-        REPORTED, flags="--error-level -e", more={"case_sensitive": False},
-    )  # fmt: skip
-    baseline: Path | None = option(None, "Leave out the findings of this file that are no worse now.", REPORTED, "FILE")
-    write_baseline: Path | None = option(
-        None, "Write all findings to this file, as known ones.", REPORTED, "FILE", more=PLACE
-    )
-    rows: int = option(20, "Print this number of lines of the table.", REPORTED, "N", more=NATURAL)
-    csv: Path | None = option(None, "Write findings as CSV; - is standard output.", REPORTED, "FILE", more=PLACE)
-    ghmarkdown: Path | None = option(
-        None, "Write findings as Markdown for GitHub; - is standard output.", REPORTED, "FILE", more=PLACE
-    )
-    html: Path | None = option(None, "Write a page with a drawing of each finding.", REPORTED, "FILE", more=PLACE)
-    plot: Path | None = option(
-        None, "Draw the largest turn against the axis: SVG, PNG, PDF.", REPORTED, "FILE", more=PLACE
     )

@@ -1,6 +1,7 @@
 """Options from files: TOML given with ``--config``, and ``[tool.glyphspline]`` of a ``pyproject.toml``.
 
-Those of ``check`` are in the table ``check`` therein, its thresholds beside them by their names.
+A command may have a table of its own therein, which no other command reads: those of ``check`` are in ``check``, its
+thresholds beside them by their names.
 """
 
 from __future__ import annotations
@@ -11,59 +12,64 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from ..checks.kinds import Thresholds
+from .. import hooks
 from ..errors import GlyphsplineError
 from ..files import reading
 
 PROJECT = "pyproject.toml"
 
-NOT_IN_FILES = ("config", "help", "thresholds")
-
-CHECK = "check"
-"""The command with a table of its own, which no other command reads."""
+NOT_IN_FILES = ("config", "help")
 
 
-def settings(path: Path | None, options: Iterable[tuple[Iterable[str], str]], command: str | None) -> dict[str, Any]:
+def settings(
+    path: Path | None, options: Iterable[tuple[Iterable[str], str]], command: str, own: tuple[str, type] | None = None
+) -> dict[str, Any]:
     """Values for a command's parameters: those of the working folder's project, and over them those of ``path``.
 
     Args:
         path: a file of settings; a ``pyproject.toml`` has them in ``[tool.glyphspline]``.
         options: flags of each option, whose long names without hyphens are the keys in files, and its parameter.
-        command: its name.
+        command: its name. own: see :class:`.groups.Command`.
 
     Raises:
         GlyphsplineError: a file cannot be read, has a key that is no option, or a value that no option can have.
     """
     long = [(flag, name) for flags, name in options for flag in flags if flag.startswith("--")]
-    names = {flag.removeprefix("--"): name for flag, name in long if name not in NOT_IN_FILES}
+    whole, kind = own or ("", None)
+    names = {flag.removeprefix("--"): name for flag, name in long if name not in (*NOT_IN_FILES, whole)}
     found: dict[str, Any] = {}
-    limits: dict[str, float] = {}
-    own = {each.name for each in fields(Thresholds)} - set(names.values()) if command == CHECK else set()
+    parts: dict[str, Any] = {}
+    known = {each.name for each in fields(kind)} - set(names.values()) if kind else set()
     for file in (Path(PROJECT), path):
         if file is None or (file is not path and not file.is_file()):
             continue
         table = _read(file)
-        if command == CHECK:
-            if file is path and CHECK not in table:
-                raise GlyphsplineError(f"has no table of settings for {CHECK!r}", font=str(file))
-            table = _table(table.get(CHECK, {}), CHECK, file)
+        if kind:
+            if file is path and command not in table:
+                raise GlyphsplineError(f"has no table of settings for {command!r}", font=str(file))
+            table = _table(table.get(command, {}), command, file)
         for key, value in table.items():
-            threshold, flag = key.replace("-", "_"), key.replace("_", "-")
-            if threshold in own:
-                limits[threshold] = value
+            part, flag = key.replace("-", "_"), key.replace("_", "-")
+            if part in known:
+                parts[part] = value
             elif flag in names:
                 found[names[flag]] = _value(key, value, file)
-            elif key != CHECK or command == CHECK:
+            elif not isinstance(value, dict) or not _is_command(key):
                 raise GlyphsplineError(
-                    f"no option {key!r}: there are {', '.join(sorted([*names, *own]))}", font=str(file)
+                    f"no option {key!r}: there are {', '.join(sorted([*names, *known]))}", font=str(file)
                 )
         try:
-            Thresholds(**limits)
+            _ = kind and kind(**parts)
         except GlyphsplineError as error:
             raise error.locate(font=str(file)) from None
-    if limits:
-        found["thresholds"] = ",".join([f"{name}={value!r}" for name, value in limits.items()])
+    if parts:
+        found[whole] = ",".join([f"{name}={value!r}" for name, value in parts.items()])
     return found
+
+
+def _is_command(name: str) -> bool:
+    """Whether a table of that name is another command's; of a plug-in that is not there nobody knows."""
+    return name in hooks.names("commands") or bool(hooks.away())
 
 
 def _read(file: Path) -> Mapping[str, Any]:

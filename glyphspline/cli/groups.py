@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
+from functools import partial
 from inspect import Parameter, Signature, signature
 from math import inf
 from pathlib import Path
-from typing import Annotated, Any, TypeAlias, TypeVar, cast, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, ClassVar, TypeAlias, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import typer
-from typer.core import TyperCommand, TyperGroup
+from typer.core import TyperCommand
 
 from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of, text_of
@@ -33,7 +34,14 @@ BARE = {"--layer": "glyphspline"}
 
 
 class Command(TyperCommand):
-    """A command whose help lists options by group, without the libraries that would draw boxes around them."""
+    """A command whose help lists options by group, without the libraries that would draw boxes around them.
+
+    Attributes:
+        own: of a command that has a table of its own in files of settings: an option that takes NAME=VALUE,…, and the
+            dataclass whose fields these are, which are keys of the table too.
+    """
+
+    own: ClassVar[tuple[str, type] | None] = None
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write a section for each group."""
@@ -45,15 +53,6 @@ class Command(TyperCommand):
         for name, records in groups.items():
             with formatter.section(name):
                 formatter.write_dl(records)
-
-
-class Commands(TyperGroup):
-    """All commands: their help has the first sentence of each whole, where it would be cut at the line's end."""
-
-    def format_commands(self, ctx: Any, formatter: Any) -> None:
-        """Write the list of commands."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, one.get_short_help_str(1000)) for name, one in self.commands.items()])
 
 
 class BareOptions(Command):
@@ -93,7 +92,7 @@ class PresetOption:
     )  # fmt: skip
 
 
-def grouped(function: Callable[..., bool | None]) -> Callable[..., None]:
+def grouped(function: Callable[..., bool | None], cls: type[Command] = Command) -> Callable[..., None]:
     """A command for typer, from a function that takes values and returns whether something asked for was not done.
 
     A parameter is a dataclass, an option annotated with :class:`.About`, or an argument of typer. Expected errors end
@@ -129,7 +128,12 @@ def grouped(function: Callable[..., bool | None]) -> Callable[..., None]:
     command.__name__, command.__doc__ = function.__name__, function.__doc__
     command.__annotations__ = {parameter.name: parameter.annotation for parameter in flat}
     command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
+    command.cls = cls  # type: ignore[attr-defined]
     return command
+
+
+bare = partial(grouped, cls=BareOptions)
+"""The same, of a function with options that may stand bare."""
 
 
 def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:

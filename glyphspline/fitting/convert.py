@@ -187,7 +187,7 @@ def _convert_contours(
     if options.is_fixed:
         fits = Fits(1, lambda given, _: convert_fixed(given, options, tolerance), keeps_collapsed=False)
     elif options.is_for_fonts:
-        from .sharp.font_fit import font_fits
+        from ..plugins.fonts.fit.fit import font_fits
 
         fits = font_fits(options, tolerance, em)
     elif options.corners == "sharp":

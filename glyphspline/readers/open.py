@@ -2,36 +2,45 @@
 
 from __future__ import annotations
 
-import re
 import sys
 import tempfile
+from collections.abc import Callable
 from dataclasses import asdict
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, NamedTuple
 
+from .. import hooks
 from ..errors import FontError
 from ..outlines.masters import DesignAxis
 from .opentype.containers import FORMATS
-from .opentype.font import Font, open_faces, open_font
+from .opentype.font import open_faces, open_font
 from .source import Location, Source, opening
-
-if TYPE_CHECKING:
-    from .designspace import Designspace, GlyphsFile
-    from .svg import SvgDrawings
-    from .ufo import Ufo
-
-AnySource: TypeAlias = "Font | Ufo | Designspace | GlyphsFile | SvgDrawings"
 
 STDIN = "-"
 UTF8 = b"\xef\xbb\xbf"
+"""The mark with which a text may begin."""
+
 LARGEST_INPUT = 1 << 29
 """Limit of bytes from standard input."""
 
 _kept: list[tempfile.TemporaryDirectory[str]] = []
 
 
-def open_source(path: str | Path, face_index: int = 0, location: Location = None) -> AnySource:
+class Reader(NamedTuple):
+    """A kind of source that a plug-in reads.
+
+    Attributes:
+        recognises: whether a path is one, by it and the first bytes of a file (of a folder none).
+        opened: from a path and a location to the source. has_axes: whether a source may have a location.
+    """
+
+    recognises: Callable[[Path, bytes], bool]
+    opened: Callable[[Path, Location], Source]
+    has_axes: bool = False
+
+
+def open_source(path: str | Path, face_index: int = 0, location: Location = None) -> Source:
     """Open a font file, a UFO, a designspace, a Glyphs file, an SVG drawing or a folder of drawings.
 
     The content of the path decides, not its name.
@@ -44,28 +53,46 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     Raises:
         FontError: the path cannot be read, or it has no such face or location.
     """
-    if is_font(path):
-        return open_font(_place(path), face_index, location)
     path = _place(path)
+    reader = reader_of(path)
+    if reader is None:
+        return open_font(path, face_index, location)
     if face_index:
         raise FontError(f"no face {face_index}: this has one, counted from 0", font=str(path))
-    # Here and not above: a font file needs none of them, and they import a third of fontTools.
-    from .designspace import Designspace, GlyphsFile
-    from .svg import SvgDrawings
-    from .ufo import Ufo
-
-    head = b"" if path.is_dir() else beginning(path)
-    if is_glyphs(head):
-        return GlyphsFile.opened(path, location)
-    if b"<designspace" in head:
-        return Designspace.opened(path, location)
-    if location:
+    if location and not reader.has_axes:
         raise FontError("a location is asked for, and it is not a variable font", font=str(path))
+    return reader.opened(path, location)
+
+
+def reader_of(path: Path) -> Reader | None:
+    """How a path is read; None: as a font file, which it is, or nothing else that is known.
+
+    Raises:
+        FontError: it cannot be read, or it is of a kind that nothing here reads.
+    """
+    head = b"" if path.is_dir() else beginning(path)
+    if head[:4] in FORMATS:
+        return None
     if (path / "metainfo.plist").exists():
-        return Ufo.opened(path)
-    if path.is_dir() and next(path.glob("*.svg"), None) is None:
+        return UFO
+    for reader in hooks.every("readers"):
+        if reader.recognises(path, head):
+            return reader
+    if path.is_dir():
         raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
-    return SvgDrawings.opened(path)
+    if is_xml(head):
+        raise FontError("XML that nothing here reads" + hooks.away_words(), font=str(path))
+    return None
+
+
+def _open_ufo(path: Path, location: Location) -> Source:
+    from .ufo import Ufo  # here and not above: a font file does not need it, and it imports a part of fontTools
+
+    return Ufo.opened(path)
+
+
+UFO = Reader(lambda path, head: False, _open_ufo)
+"""Recognised by its folder."""
 
 
 def reopened(path: Path, face_index: int, location: Location) -> Source:
@@ -77,21 +104,17 @@ def reopened(path: Path, face_index: int, location: Location) -> Source:
 
 
 def is_font(path: str | Path) -> bool:
-    """Whether a path is to be read as a font file: it is one, or neither a folder, nor XML, nor a Glyphs file.
+    """Whether a path is to be read as a font file.
 
     Raises:
         FontError: it cannot be read.
     """
-    path = _place(path)
-    if path.is_dir():
-        return False
-    head = beginning(path)
-    return head[:4] in FORMATS or not (is_glyphs(head) or head.removeprefix(UTF8).lstrip()[:1] == b"<")
+    return reader_of(_place(path)) is None
 
 
-def is_glyphs(head: bytes) -> bool:
-    """Whether a file that begins so is a Glyphs file: a property list in braces."""
-    return re.match(rb'\s*\{\s*"?\.?\w+"?\s*=', head.removeprefix(UTF8)) is not None
+def is_xml(head: bytes) -> bool:
+    """Whether a file that begins so is XML."""
+    return head.removeprefix(UTF8).lstrip()[:1] == b"<"
 
 
 def beginning(path: Path) -> bytes:

@@ -48,6 +48,7 @@ class Source(ABC):
         glyph_names: every glyph, unique, in glyph index order.
         cmap: code point to glyph name.
         shaper: HarfBuzz's font at the location, to shape text with; None for a source without tables for shaping.
+        each_its_em: whether each glyph has an em of its own.
         outer: the direction in which outer contours run by the rules of the format: 1 counter-clockwise (PostScript),
             -1 clockwise (TrueType), 0 if it has none.
     """
@@ -62,6 +63,7 @@ class Source(ABC):
     instances: Mapping[str, Mapping[str, float]] = MappingProxyType({})
     shaper: Any = None
     outer: int = 0
+    each_its_em: bool = False
     family: str
     style: str
     metrics: FontMetrics
@@ -342,3 +344,17 @@ def reason(error: Exception) -> str:
     if isinstance(error, RecursionError):
         return "components or subroutines nested without end"
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+
+
+def tags_of(source: Any, axis: str | None = None) -> list[str]:
+    """The tags of a source's axes.
+
+    Raises:
+        GlyphsplineError: the source is not variable, or has no such axis.
+    """
+    tags = [of_font.tag for of_font in source.axes]
+    if not tags:
+        raise GlyphsplineError("not a variable font: it has no axes", font=str(source.path))
+    if axis is not None and axis not in tags:
+        raise GlyphsplineError(f"no axis {axis!r}: it has {', '.join(tags)}", font=str(source.path))
+    return tags

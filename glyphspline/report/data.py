@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict
 from math import isfinite
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
@@ -16,7 +15,6 @@ from ..types import FloatArray, rounded_up
 from . import FOLDER
 
 if TYPE_CHECKING:
-    from ..fitting.convert_masters import MastersResult
     from ..outlines.masters import MasterContour
 
 MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
@@ -75,23 +73,12 @@ def glyph_text(
         drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" if unknown.
         files: by format, relative to the run's folder.
         contours: the measures of its contours; what is None is left out.
-        masters: of a glyph in all masters, see :func:`along_axes`.
+        masters: of a glyph in all masters, as the page mixes it.
     """
     links = {name: path for name, path in files.items() if name != FOLDER}
     known = [{name: value for name, value in contour.items() if value is not None} for contour in contours]
     data = {**drawing, "files": links, "contours": known, **({"masters": masters} if masters else {})}
     return script(data).encode()
-
-
-def along_axes(result: MastersResult) -> dict[str, Any]:
-    """A glyph in all masters as the page mixes it: axes, regions, and the default and a delta for each region."""
-    masters = result.masters
-    deltas: FloatArray = np.asarray(np.linalg.inv(masters.scalars(masters.peaks)), dtype=np.float64)
-    return {
-        "axes": [asdict(axis) for axis in masters.axes], "regions": masters.regions.tolist(),
-        "source": contours_in(deltas, [contour.source for contour in result.contours]),
-        "result": contours_in(deltas, [contour.curve for contour in result.contours]),
-    }  # fmt: skip
 
 
 def contours_in(mixes: FloatArray, contours: Sequence[MasterContour]) -> list[list[Any]]:

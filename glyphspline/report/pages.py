@@ -6,6 +6,7 @@ from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
 from importlib.resources import files
+from pathlib import Path
 from string import Template
 from typing import Any
 
@@ -22,18 +23,19 @@ def page_of(
     *,
     loads: bool = False,
     facts: Sequence[str] = (),
+    own: Sequence[Path] = (),
     **parts: str,
 ) -> str:
     """A page as HTML. Nothing runs in it but its scripts, by their hash.
 
     Args:
-        template: file of this package with the page's body.
-        styles, scripts: files of this package, in the order of their dependencies.
+        template: file with the page's body. styles, scripts: files, in the order of their dependencies.
+            All are of this package, or in ``own`` folders of plug-ins.
         heading: title of the page, as text. setup: data that the scripts read from the element ``setup``.
         loads: whether it loads scripts and drawings that lie beside it. facts: sentences of the template, as text.
         parts: what else it has, as HTML.
     """
-    script = "".join(package_text(name) for name in scripts)
+    script = "".join(package_text(name, own) for name in scripts)
     beside = ["'self'", "file:"] * loads
     allowed: dict[str, list[str]] = {"script-src": [], "style-src": ["'unsafe-inline'"], "img-src": beside}
     run = ""
@@ -43,8 +45,8 @@ def page_of(
         run = f'<script type="application/json" id="setup">{as_json(setup)}</script>\n<script>\n{script}</script>\n'
     return Template(package_text("page.html")).substitute(
         policy="".join(f" {what} {' '.join(sources)};" for what, sources in allowed.items() if sources),
-        heading=text(heading), style="".join(package_text(name) for name in styles),
-        body=Template(package_text(template)).substitute(
+        heading=text(heading), style="".join(package_text(name, own) for name in styles),
+        body=Template(package_text(template, own)).substitute(
             heading=text(heading), facts="".join([f"<p>{text(line)}</p>" for line in facts]), **parts
         ),
         scripts=run,
@@ -60,6 +62,7 @@ def kind_switches(kinds: Iterable[tuple[int, str, str]], counts: Mapping[str, in
     )
 
 
-def package_text(name: str) -> str:
-    """A text file of this package."""
-    return files(__package__).joinpath(name).read_text(encoding="utf-8")
+def package_text(name: str, own: Sequence[Path] = ()) -> str:
+    """A text file in one of the folders, or else of this package."""
+    found = next((folder / name for folder in own if (folder / name).exists()), files(__package__).joinpath(name))
+    return found.read_text(encoding="utf-8")

@@ -40,7 +40,7 @@ class Cost(NamedTuple):
 
 @cache
 def costs() -> dict[str, Cost]:
-    """By kind of work, see :data:`.small_runs.WORK`."""
+    """By kind of work, see :func:`.small_runs.work`."""
     found = json.loads(Path(__file__).with_name("costs.json").read_text(encoding="utf-8"))
     return {kind: Cost(**values) for kind, values in found["kinds"].items()}
 
@@ -50,7 +50,7 @@ def least(kinds: Iterable[str], processes: int) -> float:
 
     A kind is compiled by one process, and work is done by all.
     """
-    own = [costs()[kind] for kind in kinds]
+    own = [costs()[kind] for kind in kinds if kind in costs()]  # a stranger's is not measured
     compiling = max(sum(one.compiling for one in own), processes * max(one.compiling for one in own))
     saved = sum(one.plain - one.compiled for one in own)
     return compiling / saved if saved > 0 else inf

@@ -29,11 +29,11 @@ from filelock import FileLock, Timeout
 
 from ..errors import OutputError, words_of
 from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, write_all, writing
+from ..plugins.datasets.kept import Rows, remove_unfinished
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from ..types import Head
 from .engine import Job, Observer, Part, run
-from .rows import Rows, remove_unfinished
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
 
 LOCK = ".lock"

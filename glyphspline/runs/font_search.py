@@ -8,9 +8,9 @@ from pathlib import Path
 
 from ..errors import GlyphsplineError
 from ..files import reading
-from ..readers.open import STDIN, AnySource, open_source
-from ..readers.source import Location
-from .remote import fetch_fonts, local_path
+from ..plugins.datasets.remote import fetch_fonts, local_path
+from ..readers.open import STDIN, open_source
+from ..readers.source import Location, Source
 
 SUFFIXES = frozenset({".ttf", ".otf", ".ttc", ".otc", ".woff", ".woff2"})
 """Suffixes of fonts in a folder. A file given by its own name may have any suffix."""
@@ -69,7 +69,7 @@ def _listed(path: Path) -> list[str]:
     return named
 
 
-def faces_of(font: Path, location: Location = None, face_index: int | None = None) -> Iterator[AnySource]:
+def faces_of(font: Path, location: Location = None, face_index: int | None = None) -> Iterator[Source]:
     """The faces of a font file one after the other, or the one that is asked for.
 
     Raises:

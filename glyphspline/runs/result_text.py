@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,38 +13,38 @@ import numpy as np
 
 from ..curves.bspline import Spline
 from ..files import reading
-from ..fitting.convert_masters import MastersContourResult, MastersResult
 from ..fitting.options import Options
 from ..fitting.results import ContourResult, GlyphResult, Measures
 from ..interpolation.result import Interpolation
-from ..outlines.masters import DesignAxis, MasterContour, Masters
 from ..outlines.outline import Contour, FontMetrics, Outline
 from ..types import Views
 
-KINDS: dict[str, type] = {kind.__name__: kind for kind in (
-    Contour, ContourResult, DesignAxis, FontMetrics, GlyphResult, Interpolation, MasterContour, Masters,
-    MastersContourResult, MastersResult, Measures, Options, Outline, Spline,
-)}  # fmt: skip
-"""The classes in a result. Reading a file creates objects of these classes only."""
+KINDS: tuple[type, ...] = (
+    Contour, ContourResult, FontMetrics, GlyphResult, Interpolation, Measures, Options, Outline, Spline,
+)  # fmt: skip
+"""The classes in a result. Reading a file creates objects of these classes, and of those that are asked for, only."""
 
 TYPES = {"float64": "<f8", "int64": "<i8", "bool": "|b1"}
 
-Result = TypeVar("Result", GlyphResult, MastersResult)
+Result = TypeVar("Result")
 
 
-def to_text(result: GlyphResult | MastersResult) -> str:
+def to_text(result: Any) -> str:
     """The result as one line of JSON."""
     return json.dumps(_plain(result), separators=(",", ":")) + "\n"
 
 
-def from_text(text: str, kind: type[Result]) -> Result:
+def from_text(text: str, kind: type[Result], more: Sequence[type] = ()) -> Result:
     """The result that was written, of that kind.
+
+    Args:
+        more: classes that may be in it besides ``KINDS``.
 
     Raises:
         ValueError: the text is not one.
     """
     try:
-        result = _made(json.loads(text))
+        result = _made(json.loads(text), {one.__name__: one for one in (*KINDS, *more)})
     except (KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"not a stored result: {error}") from error
     if not isinstance(result, kind):
@@ -51,14 +52,14 @@ def from_text(text: str, kind: type[Result]) -> Result:
     return result
 
 
-def stored(path: Path, kind: type[Result]) -> Result:
+def stored(path: Path, kind: type[Result], more: Sequence[type] = ()) -> Result:
     """The result in a file.
 
     Raises:
         OutputError: the file cannot be read, or holds no such result.
     """
     with reading(path):
-        return from_text(path.read_text(encoding="utf-8"), kind)
+        return from_text(path.read_text(encoding="utf-8"), kind, more)
 
 
 def _plain(value: Any) -> Any:
@@ -73,13 +74,13 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _made(value: Any) -> Any:
+def _made(value: Any, kinds: Mapping[str, type]) -> Any:
     if isinstance(value, list):
-        return tuple(_made(item) for item in value)
+        return tuple(_made(item, kinds) for item in value)
     if not isinstance(value, dict):
         return value
     if "array" in value:
         flat = np.frombuffer(base64.b64decode(value["data"]), TYPES[value["array"]])
         return flat.astype(value["array"]).reshape(value["shape"])
-    kind = KINDS[value.pop("kind")]
-    return kind(**{name: _made(item) for name, item in value.items()})
+    kind = kinds[value.pop("kind")]
+    return kind(**{name: _made(item, kinds) for name, item in value.items()})

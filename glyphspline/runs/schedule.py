@@ -138,7 +138,7 @@ def workers(
         return nullcontext(executor)
     kinds = tuple(kinds)
     if scheduler is not None:
-        from .cluster import ClusterExecutor
+        from ..plugins.datasets.cluster import ClusterExecutor
 
         return ClusterExecutor(scheduler, seconds, kinds)
     size = jobs or os.cpu_count() or 1

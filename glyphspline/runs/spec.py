@@ -204,7 +204,7 @@ class RunSpec:
         g2, tolerance, left = self.options.is_for_fonts, self.options.tolerance_for(units_per_em), list[float]()
         if self.options.is_fixed or not (self.is_back or {*self.whole} - {PARQUET}):
             return self.options
-        from ..writers.font.font_glyphs import ROUNDING, fitting_tolerance
+        from ..plugins.fonts.tables.font_glyphs import ROUNDING, fitting_tolerance
 
         rounding = 0.0 if g2 else ROUNDING * 10.0**-self.options.precision
         if self.is_back or "ufo" in self.formats:

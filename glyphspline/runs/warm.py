@@ -44,15 +44,15 @@ def warm(jobs: int | None = None, kinds: Sequence[str] | None = None) -> None:
 
     Args:
         jobs: processes; None takes all cores.
-        kinds: of work that comes, see :data:`.small_runs.WORK`; None: all.
+        kinds: of work that comes, see :func:`.small_runs.work`; None: all.
 
     Raises:
         GlyphsplineError: a process died.
     """
     from .pool import WorkerPool
-    from .small_runs import WORK
+    from .small_runs import work
 
-    left = [kind for kind in WORK if not is_ready([kind]) and (kinds is None or kind in kinds)]
+    left = [kind for kind in work() if not is_ready([kind]) and (kinds is None or kind in kinds)]
     if not left:
         return
     folder, size, started = own_folder(), min(jobs or os.cpu_count() or 1, len(left)), time.monotonic()
@@ -71,14 +71,15 @@ def warm(jobs: int | None = None, kinds: Sequence[str] | None = None) -> None:
 
 def compile_kind(kind: str) -> None:
     """Compile what is not kept of a kind of work, and mark the kind."""
-    from . import small_runs
+    from .small_runs import __file__ as own_file
+    from .small_runs import work
 
     with kept.compiling():
         prepare(kind)
-        sources = {str(small_runs.__file__)}.union(*map(code_files.sources_of, kept.asked))
+        sources = {own_file, work()[kind].__code__.co_filename}.union(*map(code_files.sources_of, kept.asked))
     if (folder := own_folder()) is None:
         return
-    lines = [f"{code_files.digest(file)} {Path(file).relative_to(PACKAGE).as_posix()}\n" for file in sorted(sources)]
+    lines = [f"{code_files.digest(file)} {os.path.relpath(file, PACKAGE)}\n" for file in sorted(sources)]
     content = "".join([_made_by(), *lines]).encode()
     with suppress(OSError):
         write_whole(str(folder / f"{kind}-{blake2b(content, digest_size=16).hexdigest()}{MARK}"), content)
@@ -88,11 +89,11 @@ def compile_kind(kind: str) -> None:
 def prepare(kind: str) -> None:
     """Do the small runs of a kind of work, once in a process, with what reads outlines and all modules of a worker."""
     from ..readers.opentype.bulk import load_compiled
-    from .small_runs import WORK
+    from .small_runs import work
 
     import_module(f"{__package__}.worker")  # by its name: the engine asks this file what is compiled
     load_compiled()
-    WORK[kind]()
+    work()[kind]()
 
 
 def code_for(kinds: Iterable[str]) -> list[str]:

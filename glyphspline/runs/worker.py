@@ -12,13 +12,12 @@ import numpy as np
 from ..errors import GlyphsplineError
 from ..files import write_whole
 from ..fitting.convert import convert_many, unfitted
-from ..fitting.convert_masters import MastersResult
 from ..fitting.options import Options
 from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, end_to_end
 from ..outlines.outline import Outline
 from ..readers.source import OutlineOrError
 from ..report import FOLDER as GALLERY
-from ..report.data import DECIMALS, FULL, along_axes, encoded, glyph_text, plain, row_of
+from ..report.data import DECIMALS, FULL, encoded, glyph_text, plain, row_of
 from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
 from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data
@@ -89,8 +88,8 @@ def rows_of(job: Output, results: list[GlyphResult]) -> bytes:
     """The rows of a batch as an IPC stream; none if there is no table, or no contour."""
     if PARQUET not in job.spec.whole or not any(result.contours for result in results):
         return b""
-    from ..writers.parquet import rows  # imports pyarrow
-    from .rows import streamed
+    from ..plugins.datasets.kept import streamed
+    from ..plugins.datasets.table import rows  # imports pyarrow
 
     return streamed(rows(job.font, results))
 
@@ -101,7 +100,7 @@ class Glyph(NamedTuple):
     Attributes:
         path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
         measures: of the contours; None if nothing is fitted.
-        masters: the result in all masters, of which ``result`` is the default; None of a glyph by itself.
+        kept: what is stored as the result, if that is another one. axes: see :func:`.report.data.glyph_text`.
     """
 
     result: GlyphResult
@@ -109,7 +108,8 @@ class Glyph(NamedTuple):
     source: PathData | None
     polygons: PolygonData | None
     measures: list[dict[str, Any]] | None
-    masters: MastersResult | None = None
+    kept: Any = None
+    axes: Mapping[str, Any] | None = None
 
 
 def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
@@ -150,7 +150,7 @@ def write_files(
 ) -> Done:
     """Write a glyph's files; of an empty one none, or the result in all masters. ``facts``: for the manifest."""
     empty = not glyph.result.contours
-    names = ([] if glyph.masters is None else [RESULTS]) if empty else job.spec.folders
+    names = ([] if glyph.kept is None else [RESULTS]) if empty else job.spec.folders
     files = {name: f"{name}/{task.stem}{suffix_of(name)}" for name in names}
     sizes = [write_whole(f"{job.out}/{path}", written(name, job, glyph, files)) for name, path in files.items()]
     status, advance = "empty" if empty else "ok", plain(glyph.result.outline.advance)
@@ -165,7 +165,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
     """
     spec, result, source, polygons = job.spec, glyph.result, glyph.source, glyph.polygons
     if name == RESULTS:
-        return to_text(glyph.masters or result)
+        return to_text(glyph.kept or result)
     if name in (POLYGON, GALLERY):
         assert source is not None
         assert polygons is not None
@@ -173,8 +173,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
             return polygon_document(result, source, polygons)
         polygon, control = (part.text for part in polygons)
         shown = {"source": source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
-        axes = along_axes(glyph.masters) if glyph.masters else None
-        return glyph_text(shown, files, glyph.measures or (), axes)
+        return glyph_text(shown, files, glyph.measures or (), glyph.axes)
     path, box = {"path": glyph.path}, {"ink": glyph.path.box}
     shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": box, "pdf": box}
     known = shared.get(name, {})

@@ -1,7 +1,6 @@
-"""Formats of a drawing: a glyph or a text as a file, by name. Plug-ins add theirs through an entry point.
+"""Formats of a drawing: a glyph or a text as a file, by name. Plug-ins add theirs.
 
-Formats are found by name in one table, ``OURS``; only a name that is not in it is looked for among the entry points
-of installed packages, as that takes time.
+Formats are found by name in one table, ``OURS``; only for a name that is not in it plug-ins are asked.
 """
 
 from __future__ import annotations
@@ -9,21 +8,16 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .. import hooks
 from ..errors import GlyphsplineError, OptionError, require
 from ..extras import EXTRAS
 from .settings import Settings
 
 if TYPE_CHECKING:
-    from importlib.metadata import EntryPoint
-
     from ..fitting.results import GlyphResult
-
-GROUP = "glyphspline.formats"
-"""The entry point group: the value of an entry point is a :class:`Format` of the same name."""
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _SUFFIX = re.compile(r"(\.[A-Za-z0-9]+)+")
@@ -62,21 +56,24 @@ class Format:
 
 
 def format_named(name: str) -> Format:
-    """The format of that name: ours, or a plug-in's.
+    """The format of that name: the pipeline's, or a plug-in's.
 
     Raises:
         OptionError: there is none; the message lists all there are.
-        GlyphsplineError: the plug-in cannot be loaded, or is no format of that name.
+        GlyphsplineError: the plug-in cannot be loaded, or has no format of that name there.
     """
     if name in OURS:
         return OURS[name]
-    if name not in _plug_ins():
-        raise OptionError(f"no format {name}: there are {', '.join(format_names())}")
-    return _loaded(_plug_ins()[name])
+    found = hooks.find("formats", name)
+    if found is None:
+        raise OptionError(f"no format {name}: there are {', '.join(format_names())}{hooks.away_words()}")
+    if not isinstance(found, Format) or found.name != name:
+        raise GlyphsplineError(f"the plug-in for format {name!r} has {found!r} in its place")
+    return found
 
 
 def formats() -> tuple[Format, ...]:
-    """All formats with one file a glyph: ours, then those of plug-ins by name.
+    """All formats with one file a glyph: the pipeline's, then those of plug-ins by name.
 
     Raises:
         GlyphsplineError: a plug-in cannot be loaded.
@@ -85,35 +82,13 @@ def formats() -> tuple[Format, ...]:
 
 
 def format_names() -> tuple[str, ...]:
-    """The names of all formats, without loading plug-ins."""
-    return (*OURS, *sorted(_plug_ins()))
+    """The names of all formats; none is imported."""
+    return (*OURS, *(name for name in hooks.names("formats") if name not in OURS))
 
 
 def is_format(name: str) -> bool:
-    """Whether there is a format of that name; a plug-in is not loaded."""
-    return name in OURS or name in _plug_ins()
-
-
-@cache
-def _plug_ins() -> dict[str, EntryPoint]:
-    """Entry points of plug-ins by name, of several with one name the first; names of ours are left out."""
-    from importlib.metadata import entry_points  # here and not above: few runs name a plug-in
-
-    entries = [entry for entry in entry_points(group=GROUP) if entry.name not in OURS and _NAME.fullmatch(entry.name)]
-    return {entry.name: entry for entry in reversed(entries)}
-
-
-@cache
-def _loaded(entry: EntryPoint) -> Format:
-    plug_in = f"the plug-in for format {entry.name!r}{f' of {entry.dist.name}' if entry.dist else ''}"
-    try:
-        found = entry.load()
-    except Exception as error:  # a plug-in may raise anything
-        reason = f"{type(error).__name__}: {error}"
-        raise GlyphsplineError(f"{plug_in} cannot be loaded: {reason}") from error
-    if not isinstance(found, Format) or found.name != entry.name:
-        raise GlyphsplineError(f"{plug_in} is no such format: {entry.value} is {found!r}")
-    return found
+    """Whether there is a format of that name; none is imported."""
+    return name in OURS or name in hooks.names("formats")
 
 
 def _lazy(place: str, *more: Any) -> Callable[[GlyphResult, Settings], str | bytes]:
@@ -136,8 +111,5 @@ OURS = {each.name: each for each in (
     Format("curvature-png", ".png", _lazy("figures.drawings:write_map", "png")),
     Format("curvature-pdf", ".pdf", _lazy("figures.drawings:write_map", "pdf")),
     Format("json", ".json", _lazy("json_file:json_text")),
-    Format("polyline", ".json", _lazy("polyline_files:polyline_json")),
-    Format("polyline-csv", ".csv", _lazy("polyline_files:polyline_csv")),
-    Format("dxf", ".dxf", _lazy("dxf:write"), extra="cad"),
 )}  # fmt: skip
-"""Our formats by name, in the order in which a run writes and lists them."""
+"""The pipeline's formats by name, in the order in which a run writes and lists them."""

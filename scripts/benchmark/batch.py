@@ -117,7 +117,7 @@ def per(seconds: float) -> str:
 def ours(out: Path, gids: Sequence[int], options: object, formats: tuple[str, ...], jobs: int) -> float:
     """Seconds a glyph of a whole run: opening the font, workers' start, files, manifest, index."""
     from glyphspline.readers import open_font
-    from glyphspline.runs.jobs.convert import convert_font
+    from glyphspline.runs.convert import convert_font
     from glyphspline.runs.spec import RunSpec
 
     start = perf_counter()

@@ -68,8 +68,8 @@ def row(what: str, path: Path, other: Path | None, gids: Sequence[int] | None, m
 
 def checked(path: Path, gids: Sequence[int] | None) -> tuple[int, str]:
     """Check glyphs; their number, and what was found in words."""
+    from glyphspline.plugins.checks.job import check_font
     from glyphspline.readers import open_font
-    from glyphspline.runs.jobs.check import check_font
 
     font = open_font(path)
     names = font.glyph_names if gids is None else [font.glyph_names[gid] for gid in gids]
@@ -82,8 +82,8 @@ def checked(path: Path, gids: Sequence[int] | None) -> tuple[int, str]:
 
 def compared(old: Path, new: Path, gids: Sequence[int] | None) -> tuple[int, str]:
     """Compare glyphs; the number of pairs, and what was found in words."""
+    from glyphspline.plugins.comparing.job import compare_fonts, pairs_of
     from glyphspline.readers import open_font
-    from glyphspline.runs.jobs.diff import compare_fonts, pairs_of
 
     fonts = open_font(old), open_font(new)
     chosen = None if gids is None else [fonts[0].glyph_names[gid] for gid in gids]

@@ -25,8 +25,8 @@ from pathlib import Path
 from time import perf_counter
 
 import glyphspline as gs
-from glyphspline.datasets.rows import fits_of, table_of
-from glyphspline.datasets.spec import DatasetSpec
+from glyphspline.plugins.datasets.rows import fits_of, table_of
+from glyphspline.plugins.datasets.spec import DatasetSpec
 
 from .batch import least
 from .check import ANCHORED, LATIN, OTHER_LATIN

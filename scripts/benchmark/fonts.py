@@ -20,10 +20,10 @@ from fontTools.ttLib import TTFont
 import glyphspline as gs
 from glyphspline.fitting.convert import unfitted
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.readers import AnySource
+from glyphspline.plugins.fonts.tables.font_file import write_font
+from glyphspline.plugins.fonts.tables.font_glyphs import drawn_result
+from glyphspline.readers import Source
 from glyphspline.types import FloatArray
-from glyphspline.writers.font.font_file import write_font
-from glyphspline.writers.font.font_glyphs import drawn_result
 
 from ..survey import SegmentPen, faces
 from .faithful import fewest, forge_results, inside, numbers, to_em
@@ -98,7 +98,7 @@ def font_rows(name: str, path: Path, text: str) -> list[Row]:
     return [*found, Row(f"{name}: fast, a glyph", spent * 1e3, "ms", 10 if text == HAN else 4, None, False, note)]
 
 
-def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: AnySource) -> list[Row]:
+def written_rows(name: str, source: Path, made: Path, glyphs: list[str], font: Source) -> list[Row]:
     """What is in the written file, against the source's."""
     em, new, jumps, old_jumps = font.metrics.units_per_em, 0, 0, 0
     before, after = (TTFont(file, fontNumber=0) for file in (source, made))

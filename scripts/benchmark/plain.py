@@ -99,8 +99,8 @@ def comparisons(outlines: list[Outline]) -> None:
 def points(outlines: list[Outline]) -> None:
     """Outlines as data sets have them."""
     from glyphspline.fitting.results import as_glyph
-    from glyphspline.outlines.canonical_outlines import canonical_outlines
-    from glyphspline.outlines.resampling import resampled
+    from glyphspline.plugins.datasets.canonical_outlines import canonical_outlines
+    from glyphspline.plugins.datasets.resampling import resampled
 
     canonical_outlines(outlines)
     for outline in outlines:
@@ -109,7 +109,7 @@ def points(outlines: list[Outline]) -> None:
 
 def quadratics(outlines: list[Outline]) -> None:
     """What a TTF stores."""
-    from glyphspline.fitting.sharp.font_points import quadratic_points
+    from glyphspline.plugins.fonts.fit.points import quadratic_points
 
     for outline in outlines:
         em = outline.metrics.units_per_em

@@ -14,7 +14,7 @@ import pytest
 from playwright.sync_api import expect, sync_playwright
 
 import glyphspline as gs
-from glyphspline.runs.jobs.convert import convert_font, write_gallery
+from glyphspline.runs.convert import convert_font, write_gallery
 from glyphspline.runs.spec import RunSpec
 from tests.places import FONTS
 

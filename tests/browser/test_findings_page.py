@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from tests.places import FONTS
 
 from ..faulty_drawings import drawings, turning

@@ -9,8 +9,8 @@ import pytest
 from playwright.sync_api import expect
 
 import glyphspline as gs
+from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.report.gallery import write_report
-from glyphspline.runs.jobs.masters import convert_font_masters
 from glyphspline.runs.schedule import InProcess
 from glyphspline.runs.spec import RunSpec
 from glyphspline.writers.svg.path_data import curves_data

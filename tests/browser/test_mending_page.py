@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 
 from ..variable_fonts import quadratic, variable_font
 

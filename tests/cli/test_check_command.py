@@ -17,12 +17,12 @@ import pytest
 from typer.testing import CliRunner, Result
 
 import glyphspline as gs
-from glyphspline.checks.baseline import Baseline
-from glyphspline.checks.finding import severity
-from glyphspline.checks.kinds import KINDS
-from glyphspline.cli.commands import app
-from glyphspline.cli.findings import COLUMNS
-from glyphspline.report.findings_page import to_draw
+from glyphspline.cli.app import app
+from glyphspline.outlines.flaws.kinds import KINDS
+from glyphspline.plugins.checks.baseline import Baseline
+from glyphspline.plugins.checks.finding import severity
+from glyphspline.plugins.checks.page import to_draw
+from glyphspline.plugins.checks.tables import COLUMNS
 from tests.faulty_drawings import drawings, turning
 from tests.places import FONTS
 

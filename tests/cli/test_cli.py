@@ -18,11 +18,11 @@ from fontTools.ttLib import TTFont
 from typer.testing import CliRunner, Result
 
 import glyphspline
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.cli.groups import grouped, without
-from glyphspline.datasets.spec import DatasetSpec
 from glyphspline.fields import arguments, options_of
 from glyphspline.fitting.options import PRESETS, Options
+from glyphspline.plugins.datasets.spec import DatasetSpec
 from glyphspline.runs.folder import locked
 from glyphspline.runs.spec import RunSpec
 from glyphspline.runs.summary import Summary
@@ -247,7 +247,7 @@ def test_a_process_of_its_own_with_workers(tmp_path: Path) -> None:
 
 
 def test_help_imports_nothing_heavy() -> None:
-    code = "import sys; from glyphspline.cli.commands import app; from typer.testing import CliRunner; " \
+    code = "import sys; from glyphspline.cli.app import app; from typer.testing import CliRunner; " \
            "assert CliRunner().invoke(app, ['--help']).exit_code == 0; print(*sys.modules)"  # fmt: skip
     loaded = call("-c", code).stdout.split()
     assert "glyphspline.cli" in loaded

@@ -15,11 +15,11 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.outlines.joins import joins
-from glyphspline.runs.jobs import atlas
-from glyphspline.runs.jobs.atlas import make_atlas
-from glyphspline.writers.figures.atlas import overview, profile
+from glyphspline.plugins.viewer import atlas
+from glyphspline.plugins.viewer.atlas import make_atlas
+from glyphspline.plugins.viewer.atlas_pages import overview, profile
 from glyphspline.writers.settings import Maps
 from glyphspline.writers.svg.comb import teeth
 from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.extras import has
-from glyphspline.fontspector import CHECK, LISTED, PROFILE, SOURCES
+from glyphspline.plugins.checks.fontspector import CHECK, LISTED, PROFILE, SOURCES
 from tests.places import ROOT
 
 FONT = ROOT / "fonts_test" / "kouzan-gyosho.otf"

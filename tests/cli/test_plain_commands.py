@@ -13,11 +13,11 @@ import pytest
 from starlette.testclient import TestClient
 from typer.testing import CliRunner
 
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.code_files import OFF, PLACE, kept
+from glyphspline.plugins.viewer.app import make_app
 from glyphspline.report import FOLDER as GALLERY
 from glyphspline.runs.spec import WHOLE
-from glyphspline.viewer.app import make_app
 from glyphspline.writers.formats import OURS
 from tests.variable_fonts import polygon, quadratic, variable_font
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from tests.datasets.test_dataset import broken_glyph
 from tests.places import FONTS, GYOSHO
 from tests.readers.test_bulk import with_anchors

@@ -14,8 +14,8 @@ from svgpathtools import parse_path
 from typer.testing import CliRunner, Result
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
-from glyphspline.cli.text_command import BY_SUFFIX
+from glyphspline.cli.app import app
+from glyphspline.plugins.text.command import BY_SUFFIX
 from glyphspline.types import FloatArray
 from tests.places import DEJAVU, FONTS
 

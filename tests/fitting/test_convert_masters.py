@@ -16,27 +16,27 @@ from scipy.spatial import cKDTree
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.curves.comb import end_curvatures
 from glyphspline.curves.cubics import turns
 from glyphspline.curves.pairing import pair_instances
 from glyphspline.curves.slip import regular
-from glyphspline.fitting.convert_masters import MastersContourResult, changes_at
 from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.outlines.outline import Contours
+from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
+from glyphspline.plugins.fonts.ufo_folder import write_designspace
+from glyphspline.plugins.masters.convert_masters import MastersContourResult, changes_at
+from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
+from glyphspline.plugins.masters.single_fonts import masters_of_fonts
+from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.readers import Font
-from glyphspline.readers.single_fonts import masters_of_fonts
-from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.runs.summary import MastersSummary
 from glyphspline.types import BoolArray, FloatArray, MadeOnDemand
-from glyphspline.writers.font.master_deltas import Redrawn
-from glyphspline.writers.font.new_variable_font import to_new_variable_font
-from glyphspline.writers.font.variable_font import to_variable_font
 from glyphspline.writers.svg.path_data import path_data
-from glyphspline.writers.ufo_folder import write_designspace
 from tests import topology
 from tests.places import FONTS
 

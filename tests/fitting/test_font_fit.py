@@ -12,28 +12,28 @@ from fontTools.ttLib import TTFont
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.checks.kinds import KINK
-from glyphspline.checks.segments import WHAT
 from glyphspline.cli.groups import for_fonts
 from glyphspline.curves.cubics import hidden_extrema, turns
 from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.fitting.sharp.corners import find_joints
-from glyphspline.fitting.sharp.font_fit import ONE, TURNING, findings
-from glyphspline.fitting.sharp.font_points import (
+from glyphspline.fitting.sharp.settings import EFFORTS
+from glyphspline.outlines.contour_arrays import ContourArrays
+from glyphspline.outlines.flaws.joints import WHAT
+from glyphspline.outlines.flaws.kinds import KINK
+from glyphspline.outlines.outline import Contours
+from glyphspline.outlines.segments import all_cubics
+from glyphspline.plugins.fonts.fit.fit import ONE, TURNING, findings
+from glyphspline.plugins.fonts.fit.gates import Limits, misses
+from glyphspline.plugins.fonts.fit.harmony import AXIS, FIXED, Run, end_jump, harmonise
+from glyphspline.plugins.fonts.fit.points import (
     of_points,
     quadratic_points,
     rounded_nodes,
     stored_points,
     with_cut_lines,
 )
-from glyphspline.fitting.sharp.harmony import AXIS, FIXED, Run, end_jump, harmonise
-from glyphspline.fitting.sharp.run_gates import Limits, misses
-from glyphspline.fitting.sharp.settings import EFFORTS
-from glyphspline.outlines.contour_arrays import ContourArrays
-from glyphspline.outlines.outline import Contours
-from glyphspline.outlines.segments import all_cubics
+from glyphspline.plugins.fonts.tables.font_file import write_font
 from glyphspline.types import FloatArray
-from glyphspline.writers.font.font_file import write_font
 from tests.places import FONTS, GYOSHO
 
 TEXT = "永龍好書山河風月草花鳥"

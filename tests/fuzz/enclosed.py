@@ -19,7 +19,7 @@ from typing import Any, NamedTuple, TypeAlias
 import fontTools
 
 import glyphspline
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.interpolation.batch import _pool
 from glyphspline.runs import schedule
 

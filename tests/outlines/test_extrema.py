@@ -11,11 +11,11 @@ import pytest
 import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
 from glyphspline.outlines.extrema import SHORTEST, UNIT, extremal_places, peaks, with_extrema
-from glyphspline.readers import AnySource, open_font, open_source
+from glyphspline.plugins.fonts.tables.font_file import to_font, write_font
+from glyphspline.plugins.fonts.tables.font_glyphs import ROUNDING, Flavour, fitting_tolerance
+from glyphspline.plugins.fonts.ufo_folder import write_ufo
+from glyphspline.readers import Source, open_font, open_source
 from glyphspline.types import FloatArray
-from glyphspline.writers.font.font_file import to_font, write_font
-from glyphspline.writers.font.font_glyphs import ROUNDING, Flavour, fitting_tolerance
-from glyphspline.writers.ufo_folder import write_ufo
 from tests.drawings import circle, polygon_contour, result
 from tests.places import FONTS
 from tests.readers.test_fonts import bounds, two_sided_distance
@@ -77,7 +77,7 @@ def test_peaks_rise_and_fall_by_the_height() -> None:
     assert peaks([0.0, 0.1, 0.0], 0.5) == peaks([], 0.5) == []
 
 
-def read_back(source: AnySource, results: list[gs.GlyphResult], kind: str, folder: Path) -> AnySource:
+def read_back(source: Source, results: list[gs.GlyphResult], kind: str, folder: Path) -> Source:
     path = folder / f"out.{kind}"
     if kind == "ufo":
         write_ufo(source, results, path)

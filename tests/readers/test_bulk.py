@@ -19,9 +19,9 @@ from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 from fontTools.ttLib.tables.ttProgram import Program
 
-from glyphspline.checks.check import check
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.outlines.outline import FontMetrics, Outline
+from glyphspline.plugins.checks.check import check
 from glyphspline.readers import Font, open_font, open_source
 from glyphspline.readers.opentype import bulk
 from glyphspline.readers.opentype.bulk import BulkReader

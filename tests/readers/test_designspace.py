@@ -13,8 +13,8 @@ from fontTools.designspaceLib import DesignSpaceDocument
 from fontTools.ufoLib import UFOWriter
 
 from glyphspline import FontError, GlyphsplineError, open_source
+from glyphspline.plugins.masters.designspace import Designspace
 from glyphspline.readers import Source
-from glyphspline.readers.designspace import Designspace
 from glyphspline.readers.ufo import Ufo
 
 Points: TypeAlias = Sequence[tuple[float, float]]

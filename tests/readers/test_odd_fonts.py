@@ -13,11 +13,11 @@ from fontTools.ttLib.tables.DefaultTable import DefaultTable
 import glyphspline as gs
 from glyphspline.errors import FontError
 from glyphspline.fitting.options import Options
+from glyphspline.plugins.fonts.tables.font_file import to_font
 from glyphspline.readers import open_font
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
-from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
-from glyphspline.writers.font.font_file import to_font
 from tests.places import FONTS
 from tests.writers.test_font import largest_distance
 

@@ -13,8 +13,8 @@ from fontTools.pens.areaPen import AreaPen
 import glyphspline as gs
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.outlines.outline import Outline
+from glyphspline.plugins.drawings.svg import SvgDrawings
 from glyphspline.readers import Source, open_source
-from glyphspline.readers.svg import SvgDrawings
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
 

@@ -24,10 +24,10 @@ from glyphspline.fitting.options import Options
 from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.readers import Font, open_font
 from glyphspline.runs import worker
+from glyphspline.runs.convert import convert_font, write_gallery
 from glyphspline.runs.file_names import LONGEST_NAME, file_names, folders_for
 from glyphspline.runs.folder import JOURNAL, entries_of
 from glyphspline.runs.font_search import find_fonts
-from glyphspline.runs.jobs.convert import convert_font, write_gallery
 from glyphspline.runs.spec import Limits, RunSpec
 from glyphspline.runs.summary import Summary
 from glyphspline.runs.worker import contour_entries

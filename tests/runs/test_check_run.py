@@ -13,13 +13,13 @@ import pytest
 from fontTools.ttLib.tables._g_l_y_f import Glyph, GlyphCoordinates
 
 import glyphspline as gs
-from glyphspline.checks.finding import Finding
-from glyphspline.checks.kinds import Thresholds
-from glyphspline.checks.kinks import kinks
 from glyphspline.errors import FontError
+from glyphspline.outlines.flaws.kinds import Thresholds
 from glyphspline.outlines.masters import MasterContour, Masters
-from glyphspline.runs.jobs import check as check_run
-from glyphspline.runs.jobs.check import Asked, AxesJob, CheckJob, GlyphFindings, check_font, check_fonts
+from glyphspline.plugins.checks import job as check_run
+from glyphspline.plugins.checks.finding import Finding
+from glyphspline.plugins.checks.job import Asked, AxesJob, CheckJob, GlyphFindings, check_font, check_fonts
+from glyphspline.plugins.masters.kinks import kinks
 from glyphspline.runs.schedule import workers
 from tests.places import FONTS
 from tests.readers.test_bulk import build, simple
@@ -115,7 +115,7 @@ def test_a_broken_glyph_costs_only_itself(tmp_path: Path) -> None:
 
 
 def test_an_unexpected_error_is_of_one_glyph(monkeypatch: pytest.MonkeyPatch) -> None:
-    from glyphspline.checks import check
+    from glyphspline.plugins.checks import check
 
     font, real = gs.open_source(KOUZAN), check.measured
     most = max(font.outlines(font.glyph_names), key=lambda outline: len(outline.arrays.degrees))
@@ -228,7 +228,7 @@ def test_other_findings_are_told_once_at_a_step(variable: Path) -> None:
 
 
 def test_a_joint_that_is_a_corner_in_a_master_does_not_kink() -> None:
-    from glyphspline.checks.on_axes import on_axes
+    from glyphspline.plugins.masters.on_axes import on_axes
 
     font = gs.open_font(FONTS / "variable.ttf")
     masters = font.masters(font.glyph_names[-1])

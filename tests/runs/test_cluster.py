@@ -14,10 +14,10 @@ import pytest
 
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
+from glyphspline.plugins.datasets.cluster import KEPT, ClusterExecutor
 from glyphspline.readers import open_font
 from glyphspline.runs import pool as pools
-from glyphspline.runs.cluster import KEPT, ClusterExecutor
-from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.pool import TimeLimitError, WorkerLostError
 from glyphspline.runs.schedule import kinds_for, workers
 from glyphspline.runs.spec import Limits, RunSpec

@@ -20,15 +20,15 @@ from fontTools.ttLib import TTFont
 
 from glyphspline.errors import GlyphsplineError
 from glyphspline.fitting.options import Options
+from glyphspline.plugins.checks.job import Asked, check_fonts
+from glyphspline.plugins.text.job import TextJob, draw, drawings
+from glyphspline.plugins.text.lay_out import layout
+from glyphspline.plugins.viewer.atlas import make_atlas
 from glyphspline.readers import open_font
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
-from glyphspline.runs.jobs.atlas import make_atlas
-from glyphspline.runs.jobs.check import Asked, check_fonts
-from glyphspline.runs.jobs.convert import convert_font
-from glyphspline.runs.jobs.text import TextJob, draw, drawings
 from glyphspline.runs.schedule import kinds_for, workers
 from glyphspline.runs.spec import Limits, RunSpec
-from glyphspline.typesetting.lay_out import layout
 from glyphspline.writers.settings import Settings
 from tests.places import ROOT
 

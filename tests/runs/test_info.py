@@ -12,11 +12,11 @@ import pytest
 from fontTools.ttLib import TTFont
 from typer.testing import CliRunner
 
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.errors import FontError
 from glyphspline.readers import Font, open_source
 from glyphspline.readers.open import file_facts
-from glyphspline.runs.jobs.deep_facts import add_glyph_facts
+from glyphspline.runs.deep_facts import add_glyph_facts
 from glyphspline.runs.schedule import workers
 from tests.places import FONTS
 from tests.readers.test_bulk import build, simple
@@ -114,7 +114,7 @@ def test_a_font_without_characters_has_none_to_count(tmp_path: Path) -> None:
 
 def test_info_reads_no_glyphs_and_imports_no_compiler() -> None:
     code = (
-        "import sys; from glyphspline.cli.commands import app; from typer.testing import CliRunner\n"
+        "import sys; from glyphspline.cli.app import app; from typer.testing import CliRunner\n"
         f"assert '18 glyphs' in CliRunner().invoke(app, ['info', {str(FONTS / 'kouzan-gyosho.ttf')!r}]).stdout\n"
         "print(*sys.modules)"
     )

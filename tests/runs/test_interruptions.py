@@ -10,9 +10,9 @@ import pytest
 from glyphspline.errors import OutputError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font
+from glyphspline.runs.convert import convert_font, write_gallery
 from glyphspline.runs.engine import Job
 from glyphspline.runs.folder import JOURNAL
-from glyphspline.runs.jobs.convert import convert_font, write_gallery
 from glyphspline.runs.spec import RunSpec
 from tests.runs.test_batch import content
 from tests.runs.test_hostile import built, square

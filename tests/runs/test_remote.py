@@ -18,10 +18,10 @@ from typing import BinaryIO
 
 import pytest
 
-from glyphspline.datasets.run import dataset
-from glyphspline.datasets.spec import DatasetSpec, Sizes
 from glyphspline.errors import FontError, GlyphsplineError, OutputError
-from glyphspline.runs import remote
+from glyphspline.plugins.datasets import remote
+from glyphspline.plugins.datasets.run import dataset
+from glyphspline.plugins.datasets.spec import DatasetSpec, Sizes
 from glyphspline.runs.font_search import find_fonts
 from tests.places import GYOSHO as FONT
 

@@ -15,9 +15,9 @@ import pytest
 from glyphspline.errors import GlyphsplineError, OutputError
 from glyphspline.fitting.options import Options
 from glyphspline.readers import Font, open_font, open_source
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.file_names import file_names
 from glyphspline.runs.folder import LOCK, entries_of, locked
-from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
 from glyphspline.types import Names
 from glyphspline.writers.settings import Appearance, Maps, Settings

@@ -13,14 +13,14 @@ import pytest
 import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.extrema import with_extrema
+from glyphspline.plugins.fonts.back.glif import Glif
+from glyphspline.plugins.fonts.back.nodes import Node, replaced
+from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.readers import open_source
 from glyphspline.readers.ufo import Ufo
-from glyphspline.runs.jobs.convert import convert_font
-from glyphspline.runs.jobs.masters import convert_font_masters
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.schedule import workers
 from glyphspline.runs.spec import RunSpec
-from glyphspline.writers.back.glif import Glif
-from glyphspline.writers.back.nodes import Node, replaced
 from tests.drawings import circle
 from tests.places import FONTS
 

@@ -17,11 +17,11 @@ from matplotlib import get_data_path
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
-from glyphspline.mending.mend import mended
-from glyphspline.mending.state import State
-from glyphspline.runs.jobs.mend import into_of
-from glyphspline.writers.back.programs import unflexed
+from glyphspline.cli.app import app
+from glyphspline.plugins.fonts.back.programs import unflexed
+from glyphspline.plugins.mending.job import into_of
+from glyphspline.plugins.mending.mend import mended
+from glyphspline.plugins.mending.state import State
 from tests.places import FONTS
 from tests.variable_drawings import changed_tables
 from tests.variable_fonts import quadratic, variable_font

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.curves.integrals import area
 from glyphspline.readers.pens import ContourPen
 from glyphspline.types import rounded_up

@@ -18,10 +18,10 @@ from fontTools.ttLib import TTFont
 
 import glyphspline as gs
 from glyphspline.outlines.masters import MasterContour, Masters
+from glyphspline.plugins.fonts.back.fonts import write_points
+from glyphspline.plugins.fonts.tables.font_glyphs import FINE, char_string, on_grid
+from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.types import FloatArray, IntArray
-from glyphspline.writers.back.fonts import write_points
-from glyphspline.writers.font.font_glyphs import FINE, char_string, on_grid
-from glyphspline.writers.font.variable_font import to_variable_font
 from tests.places import FONTS
 from tests.variable_drawings import refitted
 from tests.writers.test_back_fonts import mend

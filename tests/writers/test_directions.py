@@ -18,7 +18,7 @@ from fontTools.ttLib import TTFont
 from matplotlib import get_data_path
 from typer.testing import CliRunner
 
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.types import FloatArray
 from tests.places import FONTS
 

@@ -15,8 +15,8 @@ from matplotlib.image import imread
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
-from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.cli.app import app
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
 from glyphspline.types import FloatArray
 from glyphspline.writers.figures.drawings import write_drawing

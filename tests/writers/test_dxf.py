@@ -20,8 +20,8 @@ from scipy.spatial import cKDTree
 import glyphspline as gs
 from glyphspline.errors import OptionError
 from glyphspline.fitting.results import as_glyph
+from glyphspline.plugins.cad import dxf
 from glyphspline.types import INCHES
-from glyphspline.writers import dxf
 from glyphspline.writers.formats import format_named
 from glyphspline.writers.settings import DxfKind, Settings
 from tests.places import ROOT

@@ -20,9 +20,16 @@ import glyphspline as gs
 from glyphspline.curves.integrals import area
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.outline import Outline
-from glyphspline.readers import AnySource, open_font, open_source
-from glyphspline.writers.font.font_file import FontSummary, share_subroutines, to_font, write_font
-from glyphspline.writers.font.font_glyphs import Flavour, char_string, cut_alone, distinct, fitting_tolerance, oriented
+from glyphspline.plugins.fonts.tables.font_file import FontSummary, share_subroutines, to_font, write_font
+from glyphspline.plugins.fonts.tables.font_glyphs import (
+    Flavour,
+    char_string,
+    cut_alone,
+    distinct,
+    fitting_tolerance,
+    oriented,
+)
+from glyphspline.readers import Source, open_font, open_source
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
 from tests.readers.test_fonts import two_sided_distance
@@ -47,7 +54,7 @@ def converted(file: str, location: tuple[tuple[str, float], ...], flavour: Flavo
     return source, results, data, summary
 
 
-def reopened(data: bytes, tmp_path: Path, suffix: str = "otf") -> AnySource:
+def reopened(data: bytes, tmp_path: Path, suffix: str = "otf") -> Source:
     (tmp_path / f"written.{suffix}").write_bytes(data)
     return open_source(tmp_path / f"written.{suffix}")
 

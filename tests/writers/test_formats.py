@@ -21,20 +21,20 @@ from jsonschema import Draft202012Validator
 from typer.testing import CliRunner
 
 import glyphspline as gs
-from glyphspline.cli.commands import app
+from glyphspline.cli.app import app
 from glyphspline.curves.bezier import evaluate
 from glyphspline.errors import GlyphsplineError, OptionError, OutputError
 from glyphspline.outlines.outline import Contour, Contours, FontMetrics, Outline
 from glyphspline.outlines.polygons import flattened
+from glyphspline.plugins.cad.polyline_files import polyline_csv, polyline_json
 from glyphspline.runs import worker as batch_worker
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
-from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
 from glyphspline.types import FloatArray
 from glyphspline.writers import formats as registry
 from glyphspline.writers.formats import OURS, Format, format_named, format_names, formats
 from glyphspline.writers.json_file import json_text
-from glyphspline.writers.polyline_files import polyline_csv, polyline_json
 from glyphspline.writers.settings import Appearance, Settings
 from tests.places import FONTS, ROOT
 

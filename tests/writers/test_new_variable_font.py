@@ -19,14 +19,14 @@ from glyphspline import FontError, GlyphsplineError, OutputError, open_font, ope
 from glyphspline.curves.integrals import area
 from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.outlines.outline import Contour, Outline
+from glyphspline.plugins.fonts.tables.font_file import to_font
+from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
+from glyphspline.plugins.fonts.ufo_folder import write_designspace
+from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
+from glyphspline.plugins.masters.single_fonts import masters_of_fonts
+from glyphspline.plugins.masters.variable_font import VariableSummary
 from glyphspline.readers import Font, Source
-from glyphspline.readers.single_fonts import masters_of_fonts
 from glyphspline.types import FloatArray
-from glyphspline.writers.font.font_file import to_font
-from glyphspline.writers.font.master_deltas import Redrawn
-from glyphspline.writers.font.new_variable_font import to_new_variable_font
-from glyphspline.writers.font.variable_font import VariableSummary
-from glyphspline.writers.ufo_folder import write_designspace
 from tests.outlines.test_masters import composed
 from tests.variable_drawings import Drawing, Shaper, apart, as_it_is, dense, refitted, turns_of
 from tests.variable_fonts import polygon, quadratic, variable_font

@@ -16,19 +16,20 @@ from fontTools.ttLib.tables.TupleVariation import compileTupleVariationStore
 
 import glyphspline as gs
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.fitting.sharp import font_points
+from glyphspline.plugins.fonts import ufo_folder
+from glyphspline.plugins.fonts.back import nodes
+from glyphspline.plugins.fonts.fit import points as font_points
+from glyphspline.plugins.fonts.tables import font_file, font_glyphs
+from glyphspline.plugins.fonts.tables.font_file import FontSummary, to_font
+from glyphspline.plugins.fonts.tables.font_glyphs import Flavour
+from glyphspline.plugins.masters import variable_font
+from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.readers import Source, open_font
 from glyphspline.readers.ufo import Ufo
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import MANIFEST, entries_of
-from glyphspline.runs.jobs.convert import convert_font
-from glyphspline.runs.jobs.masters import convert_font_masters
 from glyphspline.runs.schedule import InProcess
 from glyphspline.runs.spec import RunSpec
-from glyphspline.writers import ufo_folder
-from glyphspline.writers.back import nodes
-from glyphspline.writers.font import font_file, font_glyphs, variable_font
-from glyphspline.writers.font.font_file import FontSummary, to_font
-from glyphspline.writers.font.font_glyphs import Flavour
 from scripts.bounds import FACES, SINGLE, part_of, written
 from scripts.survey import faces
 from tests.farthest import cubics, farthest

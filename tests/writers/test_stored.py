@@ -10,7 +10,7 @@ from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
-from glyphspline.writers.font.stored import Stored, compared, stored_facts
+from glyphspline.plugins.fonts.tables.stored import Stored, compared, stored_facts
 from tests.places import DEJAVU, GYOSHO
 
 

@@ -16,20 +16,20 @@ from fontTools.varLib.iup import iup_delta
 from typer.testing import CliRunner
 
 from glyphspline import Options, open_font
-from glyphspline.checks.kinds import KINK, THRESHOLDS
-from glyphspline.checks.on_axes import on_axes
-from glyphspline.checks.turns import joint_controls, turns_of
-from glyphspline.cli.commands import app
-from glyphspline.fitting.convert_masters import convert_masters
+from glyphspline.cli.app import app
+from glyphspline.outlines.flaws.kinds import KINK, THRESHOLDS
+from glyphspline.outlines.flaws.turns import joint_controls, turns_of
 from glyphspline.outlines.masters import MasterContour, Masters
+from glyphspline.plugins.fonts.tables.font_file import replace_family
+from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
+from glyphspline.plugins.fonts.tables.other_outlines import to_other_outlines
+from glyphspline.plugins.fonts.tables.stretches import ranges_of
+from glyphspline.plugins.masters.convert_masters import convert_masters
+from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.on_axes import on_axes
+from glyphspline.plugins.masters.quadratic_masters import quadratic_masters
+from glyphspline.plugins.masters.variable_font import VariableSummary, to_variable_font
 from glyphspline.readers import Font
-from glyphspline.runs.jobs.masters import redrawn_glyph
-from glyphspline.writers.font.font_file import replace_family
-from glyphspline.writers.font.master_deltas import Redrawn
-from glyphspline.writers.font.other_outlines import to_other_outlines
-from glyphspline.writers.font.quadratic_masters import quadratic_masters
-from glyphspline.writers.font.stretches import ranges_of
-from glyphspline.writers.font.variable_font import VariableSummary, to_variable_font
 from tests.places import FONTS
 from tests.variable_fonts import quadratic, variable_font
 

@@ -11,9 +11,9 @@ import pyarrow.parquet as pq
 
 import glyphspline as gs
 from glyphspline.fitting.results import Measures
+from glyphspline.plugins.datasets import table
+from glyphspline.plugins.datasets.table import schema, write_table
 from glyphspline.readers import open_font
-from glyphspline.writers import parquet as table
-from glyphspline.writers.parquet import schema, write_table
 from tests.drawings import L_SHAPE, polygon_contour, result
 from tests.places import FONTS
 

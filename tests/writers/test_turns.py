@@ -14,8 +14,8 @@ from fontTools.ttLib import TTFont
 import glyphspline as gs
 from glyphspline.fitting.convert import unfitted
 from glyphspline.fitting.options import FOR_FONTS
-from glyphspline.fitting.sharp.font_points import quadratic_points
-from glyphspline.writers.font.font_file import write_font
+from glyphspline.plugins.fonts.fit.points import quadratic_points
+from glyphspline.plugins.fonts.tables.font_file import write_font
 from tests.rounded_font import rounded_font
 from tests.turns import Turn, new_turns, turns
 

@@ -14,9 +14,9 @@ from scipy.interpolate import BSpline
 import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.extrema import with_extrema
+from glyphspline.plugins.fonts.ufo_folder import BACKGROUND, LIB_KEY, write_ufo
 from glyphspline.readers import open_font
 from glyphspline.readers.ufo import Ufo
-from glyphspline.writers.ufo_folder import BACKGROUND, LIB_KEY, write_ufo
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
 from tests.places import FONTS
 

@@ -21,13 +21,13 @@ from glyphspline import Options, OutputError, convert_masters, open_font
 from glyphspline.curves.integrals import area
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
+from glyphspline.plugins.fonts.tables.master_deltas import Redrawn, as_drawn, rounded_deltas
+from glyphspline.plugins.fonts.tables.other_outlines import to_other_outlines
+from glyphspline.plugins.fonts.ufo_folder import unlike_regions, write_designspace
+from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.variable_font import components, to_variable_font
 from glyphspline.readers import Font
-from glyphspline.runs.jobs.masters import redrawn_glyph
 from glyphspline.types import FloatArray
-from glyphspline.writers.font.master_deltas import Redrawn, as_drawn, rounded_deltas
-from glyphspline.writers.font.other_outlines import to_other_outlines
-from glyphspline.writers.font.variable_font import components, to_variable_font
-from glyphspline.writers.ufo_folder import unlike_regions, write_designspace
 from tests.outlines.test_masters import composed
 from tests.places import FONTS
 from tests.variable_drawings import Drawing, Shaper, apart, as_it_is, changed_tables, dense, refitted, turns_of

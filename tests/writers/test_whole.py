@@ -14,11 +14,11 @@ import glyphspline as gs
 from glyphspline.errors import OutputError
 from glyphspline.fitting.options import FOR_FONTS, Options
 from glyphspline.outlines.extrema import with_extrema
+from glyphspline.plugins.drawings.svg import SvgDrawings
 from glyphspline.readers import open_font
-from glyphspline.readers.svg import SvgDrawings
 from glyphspline.readers.ufo import Ufo
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
-from glyphspline.runs.jobs.convert import convert_font
 from glyphspline.runs.result_text import from_text, to_text
 from glyphspline.runs.spec import RunSpec
 from tests.places import FONTS

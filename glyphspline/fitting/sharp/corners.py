@@ -10,10 +10,10 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ...checks.kinds import THRESHOLDS
-from ...checks.segments import rounding_turn
 from ...compiled import compiled
 from ...curves.cubics import directions, jet, length, turns
+from ...outlines.flaws.joints import rounding_turn
+from ...outlines.flaws.kinds import THRESHOLDS
 from ...types import BoolArray, FloatArray, IntArray
 from .spline_curve import chord
 

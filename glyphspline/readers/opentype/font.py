@@ -17,6 +17,7 @@ import uharfbuzz as hb
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.sfnt import readTTCHeader
 
+from ... import hooks
 from ...errors import FontError
 from ...outlines.masters import DesignAxis, Masters
 from ...outlines.outline import FontMetrics
@@ -27,7 +28,6 @@ from .routes import Face
 
 if TYPE_CHECKING:
     from .bulk import BulkReader
-    from .variations import Variations
 
 REQUIRED_TABLES = ("head", "hhea", "hmtx", "maxp")
 OUTLINES = ("glyf", "CFF ", "CFF2")
@@ -152,10 +152,8 @@ class Font(Source):
         return self._variations.masters(head) if self.axes else super()._masters(head)
 
     @cached_property
-    def _variations(self) -> Variations:
-        from .variations import Variations
-
-        return Variations(self.tables(), self.axes, self._default_metrics)
+    def _variations(self) -> Any:
+        return hooks.service("variations")(self.tables(), self.axes, self._default_metrics)
 
     @cached_property
     def _bulk(self) -> BulkReader:

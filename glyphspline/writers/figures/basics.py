@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from ...files import replacing
+from ...outlines.masters import Masters
+from ...outlines.outline import Outline
 from ...types import FloatArray
 from ..settings import FigureKind
 from ..svg.comb import SIDES, Teeth, colour_classes, palette
@@ -22,6 +24,12 @@ DPI = 200.0
 
 UNDATED = {"CreationDate": None, "Producer": None, "Creator": None}
 """Metadata of a PDF: without dates and versions the same input gives the same bytes."""
+
+PAGE = (8.27, 11.69)
+"""A4 in inches."""
+
+OUTLINE: dict[str, Any] = {"facecolor": "0.93", "edgecolor": "black", "linewidth": 0.5}
+"""Of pages."""
 
 
 def blank(width: float, height: float, **how: Any) -> Any:
@@ -115,3 +123,25 @@ def colour_bar(figure: Any, reach: float, **place: Any) -> Any:
 def ring(points: FloatArray) -> FloatArray:
     """Points (n, 2), and the first one again."""
     return np.concatenate([points, points[:1]])
+
+
+def headed(heading: str, caption: str, size: tuple[float, float] = PAGE) -> Any:
+    """A page with a heading, and a line in small print below it; ``size`` in inches."""
+    figure = blank(*size)
+    figure.text(0.05, 1 - 0.39 / size[1], ascii_text(heading), fontsize=11, weight="bold", parse_math=False)
+    figure.text(0.05, 1 - 0.53 / size[1], caption, fontsize=7, color="0.35", parse_math=False)
+    return figure
+
+
+def colour_legend(
+    figure: Any, place: tuple[float, float, float, float], reach: float, words: str = " in 1/em, convex positive"
+) -> None:
+    """The colours of curvature up to ``reach`` in 1/em, at a place of the page: left, bottom, width and height."""
+    bar = colour_bar(figure, reach, cax=figure.add_axes(place), orientation="horizontal")
+    bar.set_label(f"curvature{words}", fontsize=6)
+    bar.ax.tick_params(labelsize=6)
+
+
+def glyph_label(of: Outline | Masters) -> str:
+    """Index, name and characters of a glyph."""
+    return f"gid {of.gid}  {of.name[:40]}  {' '.join(f'U+{code:04X}' for code in of.unicodes[:2])}"

@@ -1,1 +1,0 @@
-"""What may be wrong with outlines as a font stores them. Nothing is fitted."""

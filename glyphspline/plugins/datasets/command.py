@@ -1,0 +1,56 @@
+"""The command ``dataset``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, Any
+
+from ...cli import arguments as opt
+from ...cli.groups import grouped, only, place
+from ...cli.messages import print_json, progress, say
+from ...errors import OptionError
+from ...fields import About
+from .spec import ROWS, TAKEN, DatasetSpec
+
+
+def place_or_url(text: Any) -> str:
+    """Parse a path or URL, which stays as it is written."""
+    place(text)
+    return str(text)
+
+
+@grouped
+def dataset(
+    fonts: opt.FontFiles,
+    out: Annotated[
+        str, opt.out("Write to this folder, or s3://bucket/folder.", "DIR|URL", parser=place_or_url, show_default=False)
+    ],
+    spec: DatasetSpec,
+    run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
+    fit: Annotated[bool, About("Fit splines and measure them.", ROWS, flags=("--fit/--no-fit",))] = True,
+    text_file: Annotated[Path | None, About("Take only glyphs of a UTF-8 file's characters.", TAKEN)] = None,
+) -> bool:
+    """Make a data set of the glyphs of fonts: Parquet files that datasets, pandas, DuckDB and Arrow open.
+
+    Splits are by family. The same fonts and options give the same bytes, and a run that was interrupted goes on.
+    """
+    from .run import dataset as make
+
+    spec = replace(spec, characters=opt.as_typed(spec.characters), options=spec.options if fit else None)
+    if text_file is not None:
+        if spec.characters:
+            raise OptionError("give --text or --text-file, not both")
+        text = text_file.read_text(encoding="utf-8-sig")
+        spec = replace(spec, characters="".join(sorted(set(text) - set("\r\n"))))
+    with progress(run.quiet) as observer:
+        summary = make(
+            fonts, out, spec, jobs=run.jobs, scheduler=run.scheduler, restart=not run.resume, observer=observer
+        )
+    if not run.quiet:
+        for line in summary.lines():
+            say(line)
+        say(f"written to {out}: read {out.rstrip('/')}/README.md")
+    if run.as_json:
+        print_json(summary.facts())
+    return bool(summary.failed or summary.outside_tolerance or summary.fonts["failed"])

@@ -1,0 +1,1 @@
+"""Outlines as fonts store them: cubics and quadratics on the grid, G2 where their source is smooth."""

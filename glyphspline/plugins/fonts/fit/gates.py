@@ -1,0 +1,187 @@
+"""What a rounded run is refused for: it is too far from its source, turns or jumps more, or hides extrema."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ....compiled import compiled
+from ....curves.cubics import directions, hidden_extrema, length
+from ....fitting.sharp.corners import NO_HANDLE, Joints, turn_between
+from ....fitting.sharp.nearness import certified
+from ....types import BoolArray, FloatArray, IntArray
+from .harmony import Run, end_jump
+
+CORNER = np.radians(12.5)
+"""Turn that a corner keeps."""
+
+KINK = np.radians(0.48)
+"""Turn of a joint that a result may have where the source's is smaller."""
+
+MORE, SINGLE = 0.02, 0.5
+"""By how much more curvatures may jump where they do in the source: of cubics, and of single segments off the grid."""
+
+
+class Limits(NamedTuple):
+    """How runs are fitted, in steps of the grid: the tolerance, the em, and the rounds of a cubic's fit.
+
+    Attributes:
+        corners: (V, K) weights of the masters at the corners of the design space's grid. mixes: (M, K) weights with
+            which joints are looked at. A single outline is a master with the weight 1.
+    """
+
+    tolerance: float
+    em: float
+    rounds: int
+    corners: FloatArray
+    mixes: FloatArray
+
+
+@compiled
+def mixed(weights: FloatArray, cubics: FloatArray) -> FloatArray:
+    """(m V, 4, 2) instances of segments (K, m, 4, 2) in K masters, with weights (V, K): segment j in rows j V on."""
+    K, m = cubics.shape[:2]
+    V = len(weights)
+    found = np.zeros((m * V, 4, 2))
+    for j in range(m):
+        for v in range(V):
+            for k in range(K):
+                for i in range(4):
+                    for axis in range(2):
+                        found[j * V + v, i, axis] += weights[v, k] * cubics[k, j, i, axis]
+    return found
+
+
+@compiled
+def passes(cubic: FloatArray) -> float:
+    """How far a cubic passes the box of its ends, at most in a coordinate."""
+    most = 0.0
+    for axis in range(2):
+        p0, p1, p2, p3 = cubic[0, axis], cubic[1, axis], cubic[2, axis], cubic[3, axis]
+        a, b, c = p1 - p0, p2 - p1, p3 - p2
+        if a * b >= 0 and b * c >= 0:
+            continue
+        low, high = min(p0, p3), max(p0, p3)
+        for k in range(1, 16):
+            t = k / 16
+            s = 1 - t
+            at = s * s * (s * p0 + 3 * t * p1) + t * t * (3 * s * p2 + t * p3)
+            most = max(most, max(at - high, low - at))
+    return most
+
+
+@compiled
+def crosses_handles(cubic: FloatArray) -> bool:
+    """Whether both handles of a cubic reach beyond where they meet, by more than a step of the grid may make."""
+    ax, ay, bx, by = (
+        cubic[1, 0] - cubic[0, 0],
+        cubic[1, 1] - cubic[0, 1],
+        cubic[2, 0] - cubic[3, 0],
+        cubic[2, 1] - cubic[3, 1],
+    )
+    x, y = cubic[3, 0] - cubic[0, 0], cubic[3, 1] - cubic[0, 1]
+    cross = ax * by - ay * bx
+    one, two = length(ax, ay), length(bx, by)
+    if abs(cross) <= 0.01 * one * two:
+        return False
+    s, r = (x * by - y * bx) / cross, (x * ay - y * ax) / cross
+    room = 1.4 * one * two / abs(cross)
+    return s > 0.0 and r > 0.0 and one * (1 - s) > room and two * (1 - r) > room
+
+
+@compiled
+def joint_turn(before: FloatArray, behind: FloatArray) -> float:
+    """The turn of the joint of two cubics (1, 4, 2)."""
+    _, _, ax, ay = directions(before, 0, NO_HANDLE)
+    bx, by, _, _ = directions(behind, 0, NO_HANDLE)
+    return turn_between(ax, ay, bx, by)
+
+
+@compiled
+def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits, share: float) -> BoolArray:
+    """(r,) which cubics of a run are not certified within the tolerance of the source, in the whole design space.
+
+    The run begins at joint i of the source. Every cubic is paired by itself with a stretch of the source.
+
+    Args:
+        P: (K, r, 4, 2) the cubics in all masters. run: those of one. source: (K, m, 4, 2).
+    """
+    V, arc = len(limits.corners), np.empty(0)
+    chain, other = mixed(limits.corners, P), mixed(limits.corners, source)
+    if len(source) > 1:
+        arc = np.array([0.0, len(run.P), i, i + run.places[-1]])
+        if run.closed:
+            arc[::2], arc[1::2] = -np.inf, np.inf
+    hints = (i + run.places).astype(np.float64)
+    enough, r, m, stays = share * limits.tolerance, len(run.P), source.shape[1], np.empty(len(run.P) + 1, np.bool_)
+    for s in range(r + 1):
+        q, end = (s, 0) if s < r else (r - 1, 3)
+        stays[s] = (P[:, q, end] == source[:, (i + run.places[s]) % m, 0]).all()
+    return ~(certified(V, chain, hints, stays, run.held, run.closed, other, arc, enough) <= enough)
+
+
+@compiled
+def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, single: BoolArray, bad: BoolArray) -> None:
+    """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may
+    not, and those with new extrema inside.
+
+    Args:
+        single: (n,) segments of the source that are put on the grid by themselves.
+    """
+    r, m, P = len(run.P), len(cubics), run.P
+    for s in range(r):
+        alone = run.places[s + 1] - run.places[s] == 1
+        if crosses_handles(P[s]):
+            bad[s] = bad[s] or not alone or not crosses_handles(cubics[(i + run.places[s]) % m])
+        bad[s] = bad[s] or hidden_extrema(P[s]) > run.extrema[s]
+    for s in range(0 if run.closed else 1, r):
+        k, a = (i + run.places[s]) % m, s - 1 if s > 0 else r - 1
+        more = SINGLE if single[run.places[a]] or single[run.places[s]] else MORE
+        wrong = end_jump(P[a], P[s], em) > max(end_jump(cubics[k - 1], cubics[k], em) + more, 0.1)
+        bad[a], bad[s] = bad[a] or wrong, bad[s] or wrong
+
+
+@compiled
+def mark_turns(
+    P: FloatArray, run: Run, cubics: FloatArray, joints: Joints, i: int, mixes: FloatArray, bad: BoolArray
+) -> None:
+    """Mark the cubics (K, r, 4, 2) of a rounded run at whose joints some mix of the masters turns more than it may."""
+    r, m, M = len(run.P), cubics.shape[1], len(mixes)
+    new, old = mixed(mixes, P), mixed(mixes, cubics)
+    for s in range(0, r if run.closed else r + 1):
+        k = (i + run.places[s]) % m
+        a, q = (s - 1) % r, s % r
+        left = old[(k - 1) % m * M :] if s == 0 and not run.closed else new[a * M :]
+        right = old[k * M :] if s == r else new[q * M :]
+        before, after, lost = 0.0, 0.0, False
+        for v in range(M):
+            turn, now = joint_turn(old[(k - 1) % m * M + v :], old[k * M + v :]), joint_turn(left[v:], right[v:])
+            before, after, lost = max(before, turn), max(after, now), lost or now < min(turn, CORNER)
+        wrong = lost if joints.corner[k] else after > max(before, KINK)
+        if s > 0 or run.closed:
+            bad[a] = bad[a] or wrong
+        if s < r:
+            bad[q] = bad[q] or wrong
+
+
+@compiled
+def jumps_of(cubics: FloatArray, degrees: IntArray, closed: bool, em: float) -> int:
+    """The number of joints inside a run (K, n, 4, 2) at which curvatures jump by a tenth or more, in all masters."""
+    count = 0
+    for own in cubics:
+        for k in range(0 if closed else 1, len(degrees)):
+            count += degrees[k - 1] > 1 and degrees[k] > 1 and end_jump(own[k - 1], own[k], em) > 0.1
+    return count
+
+
+@compiled
+def on_grid(cubics: FloatArray, degrees: IntArray, closed: bool) -> bool:
+    """Whether all points of a run (K, r, 4, 2) are on the grid, but for its ends, which stay."""
+    r = len(degrees)
+    for s in range(r):
+        for k in range(0 if s > 0 or closed else 1, 4 if s < r - 1 or closed else 3):
+            off = np.abs(cubics[:, s, k] - np.rint(cubics[:, s, k])) > 1e-6
+            if (degrees[s] > 1 or k % 3 == 0) and off.any():
+                return False
+    return True

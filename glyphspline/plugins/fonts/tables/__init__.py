@@ -1,0 +1,1 @@
+"""Tables of fonts: outlines of one master or of several."""

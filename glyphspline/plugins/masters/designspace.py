@@ -1,0 +1,295 @@
+"""Designspaces: variable sources, whose masters are UFOs or layers of them, through fontTools' designspaceLib.
+
+Glyphs files are among them: glyphsLib turns one into a designspace with its UFOs.
+
+A glyph may be missing in some of the masters; then it has regions of its own, as its components may have. Between the
+masters it is interpolated by fontTools' model of variations, from which variable fonts are built.
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument
+from fontTools.pens.pointPen import PointToSegmentPen
+from fontTools.pens.recordingPen import RecordingPen
+from fontTools.ufoLib.glifLib import GlyphSet
+from fontTools.varLib.errors import VariationModelError
+from fontTools.varLib.models import VariationModel, normalizeValue
+
+from ...errors import FontError, GlyphsplineError
+from ...extras import need
+from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, stacked
+from ...outlines.outline import Outline
+from ...readers.open import UTF8, Reader, beginning
+from ...readers.pens import MAX_COMPONENTS, ContourPen, enter_component
+from ...readers.source import Location, Source, parsed
+from ...readers.ufo import Drawing, Ufo, components_of
+from ...types import Head
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Master(Drawing):
+    """A source of a designspace: its name, its glyphs, and where it is by axis tag, normalised."""
+
+    name: str
+    glyphs: GlyphSet
+    muted: frozenset[str]
+    at: dict[str, float]
+
+
+class Designspace(Source):
+    """A designspace at one location.
+
+    Attributes:
+        path: the file, as given. location: axis tag to user-space value; empty at the default.
+        axes: its axes. family, style, metrics, glyph_names, cmap: those of the default master.
+    """
+
+    format = kind = "designspace"
+
+    def __init__(self, path: Path, location: Location = None, file: Path | None = None) -> None:
+        """Open the masters that ``file`` names, which is at ``path`` unless it was made of what is there."""
+        self.path, file = path, file or path
+        parsed(file.read_bytes())
+        document = DesignSpaceDocument.fromfile(file)
+        if document.axisMappings:
+            raise FontError("its axes depend on each other (mappings): locations cannot be told axis by axis")
+        for axis in document.axes:
+            if not isinstance(axis, AxisDescriptor):
+                raise FontError(f"axis {axis.tag!r} has separate values, between which nothing is interpolated")
+        self.axes = tuple(_axis(axis) for axis in document.axes)
+        instances = {item.name: item.getFullUserLocation(document) for item in document.instances if item.name}
+        tags = {axis.name: axis.tag for axis in document.axes}
+        self.instances = {n: {tags[axis]: value for axis, value in at.items()} for n, at in instances.items()}
+        self.location = self.clamped(location)
+        default = document.findDefault()
+        if default is None:
+            raise FontError("no master at the default of all axes")
+        ufos: dict[str, Ufo] = {}
+        self._masters_of_all: list[_Master] = []
+        for number, source in enumerate(document.sources):
+            if source.path is None:
+                raise FontError(f"source {number} names no file")
+            if source.path not in ufos:
+                ufos[source.path] = Ufo.opened(source.path)
+            ufo, full = ufos[source.path], source.getFullDesignLocation(document)
+            at = {axis.tag: _normalised(axis, full[axis.name]) for axis in document.axes}
+            name = source.styleName or source.name or Path(source.path).stem
+            glyphs = ufo.default_layer if source.layerName is None else ufo.layer(source.layerName)
+            name = name if source.layerName is None else f"{name}, layer {source.layerName}"
+            place = tuple(round(x * 16384) / 16384 + 0.0 for x in at.values())
+            muted = frozenset(source.mutedGlyphNames)
+            master = _Master(ufo.path, source.layerName, place, name=name, glyphs=glyphs, muted=muted, at=at)
+            self._masters_of_all.append(master)
+        self._ufos, at_default = tuple(ufos.values()), ufos[default.path]
+        self.family, self.style, self.metrics = at_default.family, at_default.style, at_default.metrics
+        self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
+        self._components: dict[str, tuple[Masters, list[int | None]]] = {}
+
+    def _bytes(self) -> Iterable[bytes]:
+        return self.path.read_bytes(), *(ufo.sha256.encode() for ufo in self._ufos)
+
+    def _outline(self, head: Head) -> Outline:
+        """The glyph at the location, by the pen of all readers: it drops what has no length there."""
+        masters, pen = self._masters(head), ContourPen()
+        instance = masters.instance(self.location)
+        for contour, repeats in zip(instance.contours, masters.repeats_of, strict=False):
+            pen.contour(contour.points[None], contour.degrees, repeats)
+        notes = (*instance.notes, *pen.notes)
+        return replace(instance, contours=pen.contours, notes=notes, snapped=pen.snapped)
+
+    def _masters(self, head: Head) -> Masters:
+        return replace(self._mixed(head.name, [])[0], name=head.name, gid=head.gid, unicodes=head.unicodes)
+
+    def _drawn_in(self, name: str) -> list[_Master]:
+        return [each for each in self._masters_of_all if name in each.glyphs and name not in each.muted]
+
+    def _mixed(self, name: str, above: list[str | None]) -> tuple[Masters, list[int | None]]:
+        """A glyph in its masters and in those of its components; the contours that are its own: :class:`ContourPen`."""
+        nesting = enter_component(above, name)
+        if name in self._components:
+            return self._components[name]
+        drawn = [(master, *_drawing(master, name)) for master in self._drawn_in(name)]
+        try:
+            model = VariationModel([item[0].at for item in drawn], axisOrder=[axis.tag for axis in self.axes])
+        except VariationModelError as error:
+            where = ", ".join([item[0].name for item in drawn]) or "none"
+            raise GlyphsplineError(f"its masters ({where}) are not one default and others elsewhere") from error
+        drawn = [drawn[k] for k in model.reverseMapping]  # the default first
+        for master, parts, _ in drawn[1:]:
+            _compare(parts, drawn[0][1], master.name, drawn[0][0].name)
+        own = Masters(name, axes=self.axes, regions=stacked(map(self._region, model.supports[1:]), len(self.axes)))
+        names = [part.base for part in drawn[0][1] if part.base is not None]
+        if len(names) > MAX_COMPONENTS:
+            raise GlyphsplineError(f"more than {MAX_COMPONENTS} components")
+        children = {base: self._mixed(base, nesting)[0] for base in dict.fromkeys(names)}
+        regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
+        found = replace(own, regions=stacked(distinct_regions(regions), len(self.axes)), metrics=self.metrics)
+        weights = own.weights_at(found.peaks)  # (K, S)
+        pen = ContourPen(masters=len(found))
+        notes: list[str] = []
+        for k, part in enumerate(drawn[0][1]):
+            points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)
+            points = np.tensordot(weights, points, axes=1)  # (K, N, 2)
+            if part.base is None:
+                at = 0
+                for operation, count in part.operations:
+                    getattr(pen, operation)(*[points[:, n].T for n in range(at, at + count)])
+                    at += count
+                pen.closePath()
+                continue
+            child = children[part.base]
+            of_child = child.weights_at(found.peaks)
+            for contour, repeats in zip(child.contours, child.repeats_of, strict=False):
+                placed = np.tensordot(of_child, contour.points, axes=1) @ points[:, :2] + points[:, 2:]
+                pen.contour(placed, contour.degrees, repeats)
+            notes += child.notes
+        pen.finish()
+        found = replace(
+            found, contours=tuple(pen.stacks), advances=weights @ np.array([width for _, _, width in drawn]),
+            notes=(*pen.notes, *notes), repeats=pen.repeated,
+        )  # fmt: skip
+        if above:  # components are asked for again
+            self._components[name] = found, pen.own
+        return found, pen.own
+
+    @property
+    def folders(self) -> list[Path]:
+        """Its UFOs."""
+        return [ufo.path for ufo in self._ufos]
+
+    def drawings(self, name: str) -> Sequence[_Master]:
+        """Where a glyph is drawn itself, the default master first."""
+        return sorted(self._drawn_in(name), key=lambda each: any(each.place))
+
+    def own_contours(self, name: str) -> list[int | None]:
+        """The number in :meth:`masters` of each contour that a glyph draws itself; None: left out there."""
+        own: list[int | None] = self.drawings(name)[0].glyphs[name].numbered(self._mixed(name, [])[1])
+        return own
+
+    def components(self) -> dict[str, set[str]]:
+        """The names of the components that each composite has itself, in any master."""
+        return components_of([each.glyphs for each in self._masters_of_all])
+
+    def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
+        return tuple(support.get(axis.tag, (0.0, 0.0, 0.0)) for axis in self.axes)
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A contour, as names of a segment pen's operations and their points, or a component of another glyph.
+
+    Of a component the points (3, 2) are the rows of its matrix and its offset.
+    """
+
+    operations: tuple[tuple[str, int], ...]
+    points: list[tuple[float, float]]
+    base: str | None = None
+
+
+def _drawing(master: _Master, name: str) -> tuple[list[_Part], float]:
+    """The parts of a glyph in a master, in order, and its advance."""
+    glyph, pen = master.glyphs[name], RecordingPen()
+    glyph.replay(PointToSegmentPen(pen, outputImpliedClosingLine=True))
+    parts: list[_Part] = []
+    operations: list[tuple[str, int]] = []
+    points: list[tuple[float, float]] = []
+    for operation, given in pen.value:
+        if operation == "addComponent":
+            base, (a, b, c, d, e, f) = given
+            parts.append(_Part((), [(a, b), (c, d), (e, f)], base))
+        elif operation in ("closePath", "endPath"):
+            parts.append(_Part(tuple(operations), points))
+            operations, points = [], []
+        elif given[-1] is None:  # quadratics without a point on the curve begin midway between control points
+            (ax, ay), (bx, by) = given[-2], given[0]
+            start = ((ax + bx) / 2, (ay + by) / 2)
+            operations += [("moveTo", 1), (operation, len(given))]
+            points += [start, *given[:-1], start]
+        else:
+            operations.append((operation, len(given)))
+            points += given
+    return parts, float(glyph.width)
+
+
+def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str) -> None:
+    """Raise an error that names the first contour that is drawn otherwise than in the default master."""
+    if len(parts) != len(expected):
+        counts = f"{len(parts)} contours and components, not {len(expected)}"
+        raise GlyphsplineError(f"master {name!r} has {counts} as {default!r}")
+    for number, (part, other) in enumerate(zip(parts, expected, strict=True)):
+        if part.base != other.base:
+            kinds = ["a contour" if base is None else f"component {base!r}" for base in (part.base, other.base)]
+            raise GlyphsplineError(f"master {name!r} has {kinds[0]}, {default!r} has {kinds[1]}", contour=number)
+        words = ""
+        if len(part.operations) != len(other.operations):
+            words = f"{len(part.operations) - 1} segments, not {len(other.operations) - 1}"
+        for k, ((one, count), (its, its_count)) in enumerate(zip(part.operations, other.operations, strict=False)):
+            if not words and one != its:
+                words = f"segment {k - 1} is a {KINDS[one]}, not a {KINDS[its]}"
+            elif not words and count != its_count:
+                words = f"segment {k - 1} has {count} points, not {its_count}"
+        if words:
+            raise GlyphsplineError(f"master {name!r} is unlike {default!r}: {words}", contour=number)
+
+
+KINDS = {"moveTo": "start", "lineTo": "line", "qCurveTo": "quadratic", "curveTo": "cubic"}
+"""What the operations of a segment pen draw."""
+
+
+def _axis(axis: AxisDescriptor) -> DesignAxis:
+    """An axis; its mapping is from user space to that of the masters, both normalised."""
+    limits = (axis.minimum, axis.default, axis.maximum)
+    users = sorted({*limits, *(user for user, _ in axis.map if axis.minimum <= user <= axis.maximum)})
+    pairs = tuple((normalizeValue(user, limits), _normalised(axis, axis.map_forward(user))) for user in users)
+    mapping = () if all(before == after for before, after in pairs) else pairs
+    low, default, high = map(float, limits)
+    return DesignAxis(axis.tag, axis.name, low, default, high, mapping)
+
+
+def _normalised(axis: AxisDescriptor, value: float) -> float:
+    """A value of the masters' space, normalised."""
+    low, default, high = (axis.map_forward(user) for user in (axis.minimum, axis.default, axis.maximum))
+    return float(normalizeValue(value, (low, default, high)))
+
+
+class GlyphsFile(Designspace):
+    """A Glyphs file at one location, which needs the extra ``sources``.
+
+    Its UFOs are in a folder among the temporary files, which lasts as long as the source.
+    """
+
+    format, kind = "Glyphs", "Glyphs file"
+
+    def __init__(self, path: Path, location: Location = None) -> None:
+        self._folder = tempfile.TemporaryDirectory(prefix="glyphspline-")
+        made = need("sources").build_masters(
+            path, self._folder.name, minimal=True, write_skipexportglyphs=True, designspace_path=None
+        )
+        super().__init__(path, location, Path(made.designspace_path))
+
+    def _bytes(self) -> Iterable[bytes]:
+        return (self.path.read_bytes(),)
+
+    def master_ids(self, ids: Sequence[str]) -> dict[Path, str]:
+        """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""
+        key = "com.schriftgestaltung.fontMasterOrder"
+        return {ufo.path: ids[ufo.lib.get(key, 0)] for ufo in self._ufos}
+
+
+def is_glyphs(head: bytes) -> bool:
+    """Whether a file that begins so is a Glyphs file: a property list in braces."""
+    return re.match(rb'\s*\{\s*"?\.?\w+"?\s*=', head.removeprefix(UTF8)) is not None
+
+
+def _opened(path: Path, location: Location) -> Designspace:
+    return (GlyphsFile if is_glyphs(beginning(path)) else Designspace).opened(path, location)
+
+
+READER = Reader(lambda path, head: is_glyphs(head) or b"<designspace" in head, _opened, has_axes=True)

@@ -1,0 +1,377 @@
+"""A run over the masters of a variable font, or of single fonts that become one: a variable font or designspace out.
+
+Each glyph's result is a file, and a line of the journal, so that an interrupted run goes on where it was. The fonts are
+written from these files at the end, glyph by glyph: results of a whole CJK font need not fit into memory.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
+from dataclasses import asdict, dataclass, replace
+from functools import partial
+from math import inf, isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...errors import GlyphsplineError, OutputError
+from ...files import remove_partials, write_whole, writing
+from ...fitting.options import Options
+from ...fitting.results import ContourResults, GlyphResult, not_fitted
+from ...outlines.masters import DesignAxis, MasterContour, Masters
+from ...outlines.outline import Contours
+from ...readers import Font, Source
+from ...report import FOLDER as GALLERY
+from ...report.data import contours_in
+from ...runs.choice import USUAL
+from ...runs.convert import back_to_source, check_back, font_files, tasks_of
+from ...runs.engine import Item, Job, Observer, reason
+from ...runs.folder import (
+    Done,
+    Output,
+    Record,
+    Task,
+    conclude,
+    done,
+    entries_of,
+    locked,
+    prepare,
+    read_record,
+    recorded,
+    recorded_lines,
+)
+from ...runs.result_text import stored
+from ...runs.schedule import Place, place_of, sources
+from ...runs.spec import RESULTS, RunSpec, describe, write_run
+from ...runs.summary import NAMED, MastersSummary
+from ...types import FloatArray, MadeOnDemand, counted, listed, rounded_up
+from ...writers.formats import OURS
+from ...writers.svg.document import PolygonData, source_data
+from ...writers.svg.path_data import PathData, curves_data
+from ..fonts.tables.font_glyphs import SHARE, Flavour
+from ..fonts.tables.master_deltas import Redrawn, StoredGlyph, bound_of
+from .convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
+from .designspace import Designspace, GlyphsFile
+from .single_fonts import Unmatched, axis_of, masters_of_fonts
+
+if TYPE_CHECKING:
+    from .variable_font import VariableSummary
+
+FORMATS = (*OURS, GALLERY, "ufo", "otf", "ttf")
+"""Formats of a run over masters: drawings of the default, a gallery with sliders, a designspace with its UFOs, and
+variable fonts."""
+
+
+STORED = (DesignAxis, MasterContour, Masters, MastersContourResult, MastersResult)
+"""The classes in a result."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MastersJob(Output, Job[Task, list[Done]]):
+    """Glyphs of a font, or of single fonts and their axis, converted in all masters and written to files."""
+
+    places: tuple[Place, ...]
+    axis: str | None
+    options: Options
+
+    budget = 1.0
+
+    def item(self, task: Task) -> Item:
+        """A glyph, which is read when it is converted."""
+        return Item(task, USUAL)
+
+    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
+        """Convert one glyph, store its result and write its drawings: those of the default master."""
+        from ...runs.worker import Glyph, write_files
+
+        (task,) = tasks
+        masters = self._masters(task)
+        if in_quadratics(self.spec):
+            from .quadratic_masters import quadratic_masters
+
+            (font,) = sources(*self.places)
+            assert isinstance(font, Font)
+            result = quadratic_masters(font, masters, self.options)
+        else:
+            result = convert_masters(masters, self.options)
+        glyph, nothing = default_glyph(result), PathData("", None)
+        (source,), (path,) = source_data([glyph]), curves_data(glyph.arrays.curves, self.options.precision)
+        contours = [_measures(contour) for contour in result.contours]
+        facts = {
+            "masters": len(result.masters), "contours": contours, "notes": list(result.notes),
+            "stored": None, "kept": None, "error": None,
+        }  # fmt: skip
+        axes = along_axes(result) if GALLERY in self.spec.formats else None
+        drawn = Glyph(glyph, path, source, PolygonData(nothing, nothing), contours, result, axes)
+        return [write_files(self, task, drawn, facts, _encoded)]
+
+    def failed(self, task: Task, error: Exception) -> list[Done]:
+        """The line of a glyph that has no result; it names the font that is at fault, if that is not the first."""
+        others = {str(path): path.name for path, _, _ in self.places[1:]}
+        where = others.get(error.font or "") if isinstance(error, GlyphsplineError) else None
+        entry: dict[str, Any] = {
+            "advance": None, "status": "failed", "files": {}, "masters": None, "contours": [], "notes": [],
+            "stored": None, "kept": None,
+            "error": f"{where}: {reason(error)}" if where else reason(error),
+        }  # fmt: skip
+        return [done(task, entry, encode=_encoded)]
+
+    def _masters(self, task: Task) -> Masters:
+        fonts = sources(*self.places)
+        if self.axis is None:
+            return fonts[0].masters(task.head.name)
+        found = next(iter(masters_of_fonts(fonts, self.axis, [task.head.name])))
+        if isinstance(found, Unmatched):
+            raise found.error
+        return found
+
+
+def in_quadratics(spec: RunSpec) -> bool:
+    """Whether glyphs are fitted with quadratics, as ``glyf`` stores them."""
+    return spec.options.is_for_fonts and "ttf" in spec.formats
+
+
+def along_axes(result: MastersResult) -> dict[str, Any]:
+    """A glyph in all masters as the page mixes it: axes, regions, and the default and a delta for each region."""
+    masters = result.masters
+    deltas: FloatArray = np.asarray(np.linalg.inv(masters.scalars(masters.peaks)), dtype=np.float64)
+    return {
+        "axes": [asdict(axis) for axis in masters.axes], "regions": masters.regions.tolist(),
+        "source": contours_in(deltas, [contour.source for contour in result.contours]),
+        "result": contours_in(deltas, [contour.curve for contour in result.contours]),
+    }  # fmt: skip
+
+
+_encoded = json.JSONEncoder(ensure_ascii=False).encode
+
+
+def _measures(contour: MastersContourResult) -> dict[str, Any]:
+    rate = contour.rate_bound
+    return {
+        "segments": len(contour.curve),
+        "source_segments": len(contour.source),
+        "iterations": contour.iterations,
+        "rate_bound": None if rate is None else rounded_up(rate, 6),
+        "deviation_bound": rounded_up(contour.deviation_bound, 6),
+        "within_tolerance": contour.within_tolerance,
+        "source_segments_kept": contour.kept,
+        "regular": contour.regular,
+        "new_crossings": contour.new_crossings,
+        "collapsed": contour.collapsed,
+    }
+
+
+def convert_font_masters(
+    sources: Sequence[Source],
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec,
+    executor: Executor,
+    *,
+    axis: str | None = None,
+    restart: bool = False,
+    observer: Observer | None = None,
+) -> MastersSummary:
+    """Convert glyphs in all masters, and write variable fonts and a designspace.
+
+    An earlier run in the folder with the same fonts and options is continued; its other glyphs remain.
+
+    Args:
+        sources: a variable font or designspace alone; or, with an ``axis``, the single fonts that become one.
+        glyphs: names in the first of them. out: the folder.
+        spec: its formats are among ``FORMATS``. executor: see :func:`.schedule.workers`.
+        axis: like "wght=300:700", a value for each single font.
+        restart: remove the files of an earlier run first.
+
+    Raises:
+        OutputError: the folder cannot be written, or was made with other options; a format that the font cannot have.
+        GlyphsplineError: options that are not for masters.
+    """
+    began, first = time.perf_counter(), sources[0]
+    _check(sources, spec, axis)
+    if axis is None and "ttf" in spec.formats and isinstance(first, Font):  # its composites stay composites
+        from .variable_font import components, flavour_of
+
+        wanted = list(dict.fromkeys([*glyphs, *components(first, tuple(glyphs))]))
+        if in_quadratics(spec) and flavour_of(first) != "ttf":
+            wanted = list(first.glyph_names)  # they all become quadratics
+    else:
+        wanted = list(glyphs)
+    summary = MastersSummary()
+    with locked(out):
+        run = describe(first, spec, glyphs, None, sources[1:], axis)
+        prepare(out, spec, run, restart)
+        record = read_record(out)
+        write_run(out, run)
+        options = spec.options
+        if "ttf" in spec.formats and not in_quadratics(spec):
+            options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
+        job = MastersJob(out.absolute(), spec, places=tuple(map(place_of, sources)), axis=axis, options=options)
+        finished = record.finished()
+        left = [task for task in tasks_of(first, wanted, spec.names) if task.head.gid not in finished]
+        for _ in recorded(job, left, executor, record, out, observer):
+            pass
+        for name in spec.folders:
+            remove_partials(out / name)
+        written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
+        conclude(out, record, GALLERY in spec.formats, changed=partial(_with_written, *written))
+        for entry in entries_of(out):
+            summary.add(entry)
+    summary.seconds = time.perf_counter() - began
+    return summary
+
+
+def _with_written(kept: Mapping[str, str], stored: Mapping[str, Any], line: bytes) -> bytes:
+    """A line of the manifest that says what a font stores of the glyph, or why it has the old outline."""
+    entry = json.loads(line)
+    name = entry["glyph"]
+    return f"{_encoded(entry | {'stored': stored.get(name), 'kept': kept.get(name)})}\n".encode()
+
+
+def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
+    """Raise before the run if its options are not for masters, or a format cannot be written."""
+    font = sources[0]
+    given = () if spec.is_back and spec.formats == RunSpec().formats else spec.formats
+    if unknown := [name for name in given if name not in FORMATS]:
+        raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
+    check_options(spec.options)
+    if in_quadratics(spec) and (axis is not None or not isinstance(font, Font) or {"otf", "ufo"} & {*given}):
+        raise GlyphsplineError('beside otf and ufo, and of single fonts, ttf is made of curves of continuity "c2"')
+    if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
+        check_back(font, spec)
+    if axis is not None:
+        axis_of(axis, len(sources))
+        if "otf" in spec.formats:
+            raise OutputError("single fonts become a variable font with quadratic outlines: ask for ttf, or ufo")
+        return
+    if _flavours(spec):
+        from .variable_font import flavour_of
+
+        if not isinstance(font, Font):
+            raise OutputError("a designspace has no font whose outlines could be replaced: ask for ufo")
+        flavour_of(font)
+
+
+def _flavours(spec: RunSpec) -> list[Flavour]:
+    return [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
+
+
+def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redrawn]:
+    """The new contours of the folder's glyphs by name, each read from its file when it is asked for."""
+    files = {}
+    for _, _, line in recorded_lines(out, record):
+        entry = json.loads(line)
+        if entry["status"] == "ok" or (with_empty and entry["status"] == "empty"):
+            files[entry["glyph"]] = entry["files"][RESULTS]
+    return MadeOnDemand(files, lambda name: redrawn_glyph(stored(out / files[name], MastersResult, STORED)))
+
+
+def default_glyph(result: MastersResult) -> GlyphResult:
+    """The default master of a result and of its source, as single outlines are drawn; nothing is measured."""
+    weights = np.eye(len(result.masters))[0]
+    source, curves = (
+        Contours([each.mixed(weights) for each in contours]).arrays
+        for contours in ([each.source for each in result.contours], [each.curve for each in result.contours])
+    )
+    contours = ContourResults(not_fitted(source, curves), 0, len(result.contours))
+    return GlyphResult(replace(result.mixed(weights), contours=Contours(source)), result.options, contours)
+
+
+def redrawn_glyph(result: MastersResult) -> Redrawn:
+    """A result as the writers of variable fonts take it."""
+    contours, every = result.contours, iter(enumerate(result.masters.contours))
+    # Contours that enclose nothing have no result.
+    numbers = [next(k for k, each in every if np.array_equal(each.points, c.source.points)) for c in contours]
+    return Redrawn(
+        result.masters, tuple(c.curve for c in contours), tuple(c.inner for c in contours),
+        tuple(c.deviation_bound for c in contours), tuple(numbers), result.options.corners == "sharp",
+        result.tally,
+    )  # fmt: skip
+
+
+def _stored(glyph: StoredGlyph, redrawn: Mapping[str, Redrawn], name: str, tolerance: float) -> dict[str, Any]:
+    """What the manifest says of a glyph as a font stores it."""
+    bound, counts = bound_of(glyph, redrawn[name]), dict[str, Any]()
+    if glyph.tally is not None:
+        counts = dict(zip(("points", "kinks", "kinks_between_masters"), glyph.tally.tolist(), strict=True))
+    return {**_bounded(bound, tolerance), **counts}
+
+
+def _bounded(bound: float, tolerance: float) -> dict[str, Any]:
+    return {"bound": rounded_up(bound, 6) if isfinite(bound) else None, "within_tolerance": bool(bound <= tolerance)}
+
+
+def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> str:
+    """What became of the glyphs of a written font, in words."""
+    remark = f"{path.name}: {counted(len(facts.glyphs), 'glyph')} replaced"
+    if bounds:
+        remark += f", certified as stored within {rounded_up(max(bounds), 3):g} units of the source"
+    if (tally := facts.tally) is not None:
+        points, kinks, between = (f"{before:,} → {after:,}" for before, after in tally.tolist())
+        what = "points" if path.suffix == ".ttf" else "segments"
+        remark += f"; {what} {points}, kinks at masters and along axes {kinks}, of them between masters {between}"
+    return remark
+
+
+def _font(
+    sources: Sequence[Source], redrawn: Mapping[str, Redrawn], flavour: Flavour, spec: RunSpec, axis: str | None
+) -> tuple[bytes, VariableSummary]:
+    """A variable font of the new contours: the source's own, with outlines of its kind or the other, or a new one."""
+    from ..fonts.tables.other_outlines import to_other_outlines
+    from .new_variable_font import to_new_variable_font
+    from .variable_font import flavour_of, to_variable_font
+
+    source = sources[0]
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+    rest = (1 - SHARE) * tolerance
+    family = spec.family_of(source)
+    if axis is not None:
+        return to_new_variable_font(sources, axis, redrawn, tolerance=rest, family=family)
+    assert isinstance(source, Font)
+    how: dict[str, Any] = {"tolerance": tolerance, "family": None if spec.keep_name else family}
+    if flavour == flavour_of(source):
+        return to_variable_font(source, redrawn, flavour, **how)
+    return to_other_outlines(source, redrawn, flavour, rest=rest, **how)
+
+
+def _write_fonts(
+    sources: Sequence[Source],
+    redrawn: Mapping[str, Redrawn],
+    out: Path,
+    spec: RunSpec,
+    summary: MastersSummary,
+    axis: str | None,
+) -> tuple[dict[str, str], dict[str, Any]]:
+    """Write the run's fonts; returns why glyphs of them have their old outlines, and what is stored of the others."""
+    source, stays, stored = sources[0], dict[str, str](), dict[str, Any]()
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+    paths = {path.suffix[1:]: path for path in font_files(source, out, spec)}
+    for flavour in _flavours(spec):
+        path = paths[flavour]
+        with writing(path):
+            data, facts = _font(sources, redrawn, flavour, spec, axis)
+            write_whole(str(path), data, durable=True)
+        stored |= {name: _bounded(bound, tolerance) for name, bound in facts.composed.items()}
+        stored |= {name: _stored(glyph, redrawn, name, tolerance) for name, glyph in facts.glyphs.items()}
+        summary.remarks.append(_replaced(path, facts, [each["bound"] or inf for each in stored.values()]))
+        stays |= facts.left
+    if isinstance(source, Designspace) and ("ufo" in spec.formats or spec.is_back):
+        copy = paths.get("ufo")
+        if copy and isinstance(source, GlyphsFile):
+            copy = copy.with_suffix(".glyphs")
+        for to in [copy] * ("ufo" in spec.formats) + [None] * spec.is_back:
+            summary.remarks += back_to_source(source, redrawn, spec, to)
+    elif "ufo" in spec.formats:
+        from ..fonts.ufo_folder import write_designspace
+
+        left = write_designspace(source, redrawn, paths["ufo"])
+        summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")
+        stays |= left
+    if stays:
+        named = listed([*stays][:NAMED], len(stays))
+        summary.remarks.append(f"{counted(len(stays), 'glyph')} as it was: {named}; the manifest says why")
+    return stays, stored

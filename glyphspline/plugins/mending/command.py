@@ -1,0 +1,153 @@
+"""The command ``mend``: findings of sources are mended, and what moved goes back into them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ...cli import arguments as opt
+from ...cli.convert import chosen
+from ...cli.groups import bare, only
+from ...cli.messages import print_json, progress, put, say, stop
+from ...cli.tables import plain
+from ...errors import OptionError
+from ...fields import WRITTEN, About
+from ...files import make_folder
+from ...outlines.flaws.kinds import MENDED, MENDED_UNASKED
+from ...runs.spec import RunSpec
+from ...types import counted, rounded_up, shortened
+from ..checks.command import thresholds_of
+from ..checks.options import FOUND, ReportOptions
+
+if TYPE_CHECKING:
+    from ...readers import Font
+    from ...readers.ufo import Ufo
+    from ..masters.designspace import Designspace
+    from .job import MendedSource
+    from .state import Change
+
+SOURCES_HELP = "UFOs, designspaces, Glyphs files, and fonts: TTF and OTF, static or variable, WOFF and WOFF2."
+LEFT = 5
+"""Findings that are left and named."""
+
+
+@bare
+def mend(
+    sources: Annotated[list[Path], typer.Argument(metavar="SOURCE", help=SOURCES_HELP, show_default=False)],
+    subset: opt.Subset,
+    spec: Annotated[RunSpec, only("in_place", "layer")],
+    report: Annotated[ReportOptions, only("rows", "html")],
+    run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
+    out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,
+    dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
+    kinds: Annotated[
+        str, About(f"Mend these kinds of findings, between commas: {', '.join(MENDED)}, or all.", FOUND, "KIND,…")
+    ] = ",".join(MENDED_UNASKED),
+    tolerance: Annotated[
+        float | None,
+        About("Let outlines move by this, in font units. Without it, 1/1000 em.", FOUND, metavar="UNITS"),
+    ] = None,
+    thresholds: Annotated[str | None, About("Take these thresholds of check: kink=1.", FOUND, "NAME=VALUE,…")] = None,
+) -> bool:
+    """Mend what check finds in sources: points move as little as it takes, in all masters. None comes.
+
+    Kinks are mended unless other kinds are asked for, so that joints meant to be smooth kink nowhere along an axis.
+    Points go only where short, straight and repeated are asked for. What would move outlines by more than the
+    tolerance, or bring a new finding of any kind, is left and named, and ends the command with status 1.
+    """
+    from ...readers import Font, open_source
+    from ...readers.ufo import Ufo
+    from ...runs.schedule import workers
+    from ..masters.designspace import Designspace
+    from .job import mend_source
+
+    if (out is not None) + spec.is_back + dry_run != 1:
+        stop("give one of --in-place, --layer, --out and --dry-run")
+    if out is not None and len({path.name for path in sources}) < len(sources):
+        raise OptionError("--out takes no two sources of one name")
+    if report.html is not None and len(sources) > 1:
+        raise OptionError("--html draws one source")
+    limits = thresholds_of(thresholds, None)
+    chosen_kinds = MENDED if kinds == "all" else opt.items_of(kinds)
+    found: list[MendedSource] = []
+    undone = False
+    with workers(run.jobs, kinds=["mending"], expected=1, count=len(sources)) as pool:
+        for path in sources:
+            source = open_source(path)
+            if not isinstance(source, Ufo | Designspace | Font):
+                stop(f"{path}: only UFOs, designspaces, Glyphs files and fonts are mended")
+            names: Sequence[str] = source.glyph_names
+            if subset.is_given:
+                names = asked = chosen(source, subset, run.quiet, str(path))
+                undone |= bool(asked.missing)
+            copy = None if out is None else copy_of(source, out)
+            with progress(run.quiet) as observer:
+                found.append(mend_source(
+                    source, names, kinds=chosen_kinds, tolerance=tolerance, thresholds=limits, copy=copy,
+                    layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
+                ))  # fmt: skip
+    if report.html is not None:
+        from .page import mending_page
+
+        one, facts = found[0], [next(lines(found[0], dry_run))]
+        put(report.html, mending_page(Path(one.source).name, facts, one.changes, one.drawn))
+    if run.as_json:
+        print_json([one.facts() for one in found])
+    for one in found:
+        if not run.as_json and not run.quiet and one.mended and report.rows:
+            typer.echo(table(one.mended[: report.rows]))
+        if not run.quiet:
+            for line in lines(one, dry_run):
+                say(line)
+    return undone or any(one.left or one.failed for one in found)
+
+
+def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
+    """Where the copy of a source goes: a designspace's is a folder of its files, as its UFOs lie beside it."""
+    from ..masters.designspace import Designspace, GlyphsFile
+
+    make_folder(out)
+    is_folder = isinstance(source, Designspace) and not isinstance(source, GlyphsFile)
+    return out / (source.path.stem if is_folder else source.path.name)
+
+
+def table(changes: Sequence[Change]) -> str:
+    """What moved, a finding a line."""
+    from .page import after_words, before_words, moved_words
+
+    rows = [
+        [
+            change.glyph, change.kind, f"{change.contour}", "{:.0f}, {:.0f}".format(*change.point),
+            before_words(change), after_words(change), moved_words(change),
+            f"{rounded_up(change.distance or 0.0, 3):g}",
+        ]
+        for change in changes
+    ]  # fmt: skip
+    headings = ("glyph", "kind", "contour", "at", "before", "after", "points moved", "curves moved")
+    return plain(headings, rows, numbers=headings[2:])
+
+
+def lines(found: MendedSource, dry: bool) -> Iterator[str]:
+    """What the table does not say."""
+    mended, left = found.mended, found.left
+    verb = "would change" if dry else "changed"
+    yield (
+        f"{found.source}: {counted(len(found.changed), 'glyph')} of {found.glyphs} {verb}, "
+        f"{counted(len(found.changes), 'finding')} before, {len(left)} after"
+    )
+    if mended:
+        yield f"the largest move of a point is {mended[0].moved:.3g} units"
+    failed = [f"{name}: {why}" for name, why in found.failed]
+    yield from (f"left: {line}" for line in shortened([*map(reason, left)], LEFT, "{} more, which --json lists"))
+    yield from (f"failed: {line}" for line in shortened(failed, LEFT, "{} more"))
+
+
+def reason(change: Change) -> str:
+    """Where a finding is that is left, and why."""
+    from .page import before_words, left_words
+
+    place = "contour {}, {:.0f} {:.0f}".format(change.contour, *change.point)
+    return f"{change.glyph}, {place}, {change.kind} of {before_words(change)}: {left_words(change)}"

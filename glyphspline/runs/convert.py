@@ -1,0 +1,389 @@
+"""A run that converts the glyphs of a font: the job, what is left to do, the curvature scale, manifest and gallery."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import time
+from collections import ChainMap
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import Executor
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from ..curves.curvature import Comb, shared_scale
+from ..errors import FontError, OutputError
+from ..extras import need
+from ..files import remove_partials, write_whole, writing
+from ..fitting.results import GlyphResult, as_glyph
+from ..plugins.datasets.kept import Rows
+from ..plugins.fonts.read_back import Held, Promise, held
+from ..readers import Source, open_font
+from ..report import FOLDER as GALLERY
+from ..report.gallery import is_whole, write_index, write_report
+from ..types import Names, counted, shortened
+from ..writers.formats import format_named
+from ..writers.svg.comb import combs
+from .engine import Item, Job, Observer, reason, run, settle
+from .file_names import file_names
+from .folder import (
+    JOURNAL,
+    MANIFEST,
+    Done,
+    Output,
+    Task,
+    conclude,
+    done,
+    entries_of,
+    is_stated,
+    locked,
+    prepare,
+    read_record,
+    recorded,
+    state,
+    unstated,
+)
+from .result_text import stored
+from .schedule import Place, heads_of, kinds_for, place_of, sources, workers
+from .spec import MAPS, OF_RUNS, PARQUET, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
+from .summary import NAMED, Summary
+
+if TYPE_CHECKING:
+    from ..plugins.fonts.tables.master_deltas import Redrawn
+
+SCALE_SAMPLE = 200
+"""Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConvertJob(Output, Job[Task, list[Done]]):
+    """Glyphs converted, drawn and written to files, each with a line of the manifest."""
+
+    place: Place
+
+    budget = 40_000
+    """Segments and vertices converted at once: some 40 glyphs of a CJK face."""
+
+    def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
+        """Outlines; one that is too large is an error."""
+        from .worker import items
+
+        (source,) = sources(self.place)
+        return items(source.read([task.head for task in tasks]), self.spec.options, self.spec.limits)
+
+    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
+        """Convert outlines and write their files."""
+        from .worker import convert_and_write
+
+        made = zip(tasks, convert_and_write(self, tasks, contents), strict=True)
+        return [one if isinstance(one, Done) else self.failed(task, one)[0] for task, one in made]
+
+    def failed(self, task: Task, error: Exception) -> list[Done]:
+        """The line of a glyph that could not be converted."""
+        entry: dict[str, Any]
+        entry = {"advance": None, "status": "failed", "files": {}, "deviation": None, "contours": (), "notes": ()}
+        return [done(task, {**entry, "error": reason(error)})]
+
+    def failures(self, result: list[Done]) -> int:
+        """Number of glyphs that failed."""
+        return sum(glyph.status == "failed" for glyph in result)
+
+
+@dataclass(frozen=True)
+class SurveyJob(Job[Task, list[Comb]]):
+    """The combs of outlines, for a run's curvature scale; glyphs that fail are reported when they are converted.
+
+    Chunks are small, so that a run over few glyphs uses all workers.
+    """
+
+    place: Place
+    spec: RunSpec
+
+    chunk = 4
+    budget = 1.0
+
+    read = ConvertJob.read
+
+    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Comb]:
+        """The combs of outlines."""
+        return [comb for outline in contents for comb in combs(as_glyph(outline))]
+
+    def failed(self, task: Task, error: Exception) -> list[Comb]:
+        """None."""
+        return []
+
+
+def convert_font(
+    source: Source,
+    glyphs: Sequence[str],
+    out: Path,
+    spec: RunSpec | None = None,
+    *,
+    jobs: int | None = None,
+    executor: Executor | None = None,
+    restart: bool = False,
+    observer: Observer | None = None,
+) -> Summary:
+    """Convert glyphs of one font into a folder: files for each glyph, ``run.json``, a manifest and a gallery.
+
+    An earlier run in the folder with the same options is continued; its other glyphs remain.
+
+    Args:
+        source: the opened font; workers open it again by its path.
+        glyphs: names, as :meth:`Source.select` gives them.
+        out: the folder; it is created if it does not exist.
+        spec: how to convert and what to write.
+        jobs: worker processes; None takes all cores, 0 does everything in this process.
+        executor: used instead of worker processes, such as a :class:`.cluster.ClusterExecutor`; it is not closed.
+        restart: remove the files of an earlier run first.
+        observer: called after each chunk of glyphs.
+
+    Raises:
+        OutputError: the folder cannot be written, another run writes to it, or it was made with other options and
+            ``restart`` is not given.
+        GlyphsplineError: the options are out of range.
+    """
+    started = time.perf_counter()
+    spec = spec or RunSpec()
+    require_libraries(spec)
+    check_back(source, spec)
+    with locked(out):
+        table = next((path for path in font_files(source, out, spec) if path.suffix == f".{PARQUET}"), None)
+        prepare(out, spec, describe(source, spec, glyphs, None), restart, table)
+        rows = Rows(table, source.sha256) if table else None
+        record = read_record(out, rows)
+        finished = record.finished()
+        summary = Summary()
+        # Workers start while the tasks are listed; none do if all glyphs are finished.
+        expected = len({*glyphs}.difference([source.glyph_names[gid] for gid in finished]))
+        kinds = kinds_for(spec.options, spec.formats)
+        with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
+            tasks = tasks_of(source, glyphs, spec.names)
+            left = [task for task in tasks if task.head.gid not in finished]
+            job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
+            settle(job, left, pool, len(left))  # before the scale, which is of a sample
+            job = with_scale(job, source, glyphs, tasks, pool)
+            for part in recorded(job, left, pool, record, out, observer, rows):
+                for glyph in part.result:
+                    summary.time(part.seconds / len(part.tasks), glyph.name)
+            for name in spec.folders if left else ():
+                remove_partials(out / name)
+        gallery = GALLERY in spec.formats
+        concluded = (out / MANIFEST).exists() and not (out / JOURNAL).exists()
+        if left or not concluded or (gallery and not is_whole(out, len(record.where))):
+            conclude(out, record, gallery, unstated)
+        holds = is_stated(out) or {*spec.whole} <= {PARQUET}
+        holds = holds and all(path.exists() for path in font_files(source, out, spec))
+        if left or (rows and rows.added) or not holds:
+            summary.remarks += write_fonts(source, out, spec, rows)
+        if spec.is_back:
+            remarks, found = _write_ufo(source, results_of(source, out, spec), None, spec)
+            summary.remarks += remarks
+            state(out, {"source": found.facts()})
+        for entry in entries_of(out):
+            summary.add(entry)
+    summary.missing = getattr(glyphs, "missing", ())
+    if not spec.options.is_fixed:
+        each_its_em = spec.options.tolerance is None and source.each_its_em
+        tolerance = spec.options.tolerance_for(1000.0 if each_its_em else source.metrics.units_per_em)
+        summary.aim = f"{tolerance:.3g}{'/1000 em' if each_its_em else ' units'}"
+    summary.seconds = time.perf_counter() - started
+    return summary
+
+
+def require_libraries(spec: RunSpec) -> None:
+    """Raise a GlyphsplineError before the run starts if a library that it needs is not installed."""
+    extras = [format_named(name).extra for name in spec.folders if name not in OF_RUNS]
+    extras += ["parquet"] * ("parquet" in spec.whole) + ["overlaps"] * spec.options.remove_overlaps
+    for extra in filter(None, extras):
+        need(extra)
+
+
+def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
+    """A task for each glyph, in glyph index order."""
+    heads = list(heads_of(source, glyphs).values())
+    stems = file_names(source.glyph_names, names, source.cmap, [head.gid for head in heads])
+    return list(map(Task, heads, stems))
+
+
+def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:
+    """The job with the run's curvature scale: from the folder's run.json, or computed now. Writes run.json."""
+    old = read_run(job.out)
+    if old is not None:
+        job = replace(job, curvature_scale=old["curvature_scale"])
+    elif (given := job.spec.maps.scale_for(source.metrics.units_per_em)) is not None:
+        job = replace(job, curvature_scale=given)
+    elif MAPS & set(job.spec.formats):
+        chosen = tasks[:: -(-len(tasks) // SCALE_SAMPLE) or 1]
+        found = run(SurveyJob(job.place, job.spec), chosen, pool, ordered=True)
+        em = source.metrics.units_per_em
+        scale = shared_scale((comb for part in found for comb in part.result), em) or 1 / em
+        job = replace(job, curvature_scale=float(f"{scale:.6g}"))
+    now = describe(source, job.spec, glyphs, job.curvature_scale)
+    if old is None or any(old.get(name) != now[name] for name in REQUEST):
+        write_run(job.out, now)
+    return job
+
+
+def write_gallery(folder: Path) -> None:
+    """Write ``index.html`` for a run's folder, or for all runs in the folders below it.
+
+    Raises:
+        OutputError: there is no finished run, or one that cannot be read; or a run without the format "gallery". The
+            message has the command that adds it.
+    """
+    is_one = (folder / MANIFEST).is_file()
+    below = [folder] if is_one else sorted(path.parent for path in folder.glob(f"**/{MANIFEST}"))
+    if not below:
+        raise OutputError("holds no finished run, nor do the folders in it", font=str(folder))
+    for path in below:
+        made = read_run(path) or {}
+        drawn: dict[str, str] = next((files for entry in entries_of(path) if (files := entry.get("files"))), {})
+        if drawn and GALLERY not in drawn:
+            words = re.sub(r" --format \S+", "", made.get("command", "glyphspline convert FONT"))
+            words += (
+                f" --format {','.join([*made.get('formats', drawn), GALLERY])} --out {shlex.quote(str(path))} --restart"
+            )
+            raise OutputError(f"was made without the format gallery; add it by: {words}", font=str(path))
+        write_report(path, entries_of(path), made)
+    if not is_one:
+        write_index(folder, [path.relative_to(folder).as_posix() for path in below], f"{len(below)} fonts")
+
+
+def font_files(source: Source, out: Path, spec: RunSpec) -> list[Path]:
+    """The run's files of the formats with one file a font."""
+    stem = (re.sub(r"[^\w-]+", "", source.family)[:50] or "font") + "-spline"
+    return [out / f"{stem}.{name}" for name in spec.whole]
+
+
+def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> list[str]:
+    """Write the formats with one file a font, of all glyphs of the folder's manifest; returns remarks for the summary.
+
+    Raises:
+        OutputError: a file cannot be written, or a stored result cannot be read.
+        GlyphsplineError: the source cannot become such a font.
+    """
+    remarks, stored = [], dict[str, dict[str, Any]]()
+    for path in font_files(source, out, spec):
+        kind, glyphs = path.suffix[1:], results_of(source, out, spec)
+        with writing(path):
+            if kind == PARQUET:
+                assert rows is not None
+                remarks.append(f"{path.name}: {rows.write(entry['gid'] for entry in entries_of(out))} contours")
+                continue
+            written, found = (_write_ufo if kind == "ufo" else _write_font)(source, glyphs, path, spec)
+        remarks += written
+        stored[kind] = found.facts()
+    if stored:
+        state(out, stored)
+    return remarks
+
+
+def check_back(source: Source, spec: RunSpec) -> None:
+    """Raise before the run if outlines cannot go back into the source."""
+    if not spec.is_back:
+        return
+    from ..plugins.fonts.back.back import editable
+    from ..readers.ufo import Ufo
+
+    if not isinstance(editable(source), Ufo):
+        raise OutputError("the outlines of a designspace go back in all masters: add --masters", font=str(source.path))
+
+
+def back_to_source(
+    source: Source, glyphs: Iterable[GlyphResult] | Mapping[str, Redrawn], spec: RunSpec, copy: Path | None = None
+) -> list[str]:
+    """Write results into the source, a UFO, or those of all masters into a designspace; or into a copy of it.
+
+    Returns remarks for the summary.
+
+    Raises:
+        OutputError: a file cannot be written.
+    """
+    from ..plugins.fonts.back.back import of_masters, of_results, write_back
+    from ..readers.ufo import Ufo
+
+    own: Any = source
+    new = of_masters(own, glyphs) if isinstance(glyphs, Mapping) else of_results(own, glyphs)
+    with writing(copy or source.path):
+        found = write_back(own, new, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
+    where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
+    curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
+    curves += "" if isinstance(source, Ufo) else ", in all masters"
+    remarks = [f"{where}: new outlines of {counted(len(found.names), 'glyph')}, {curves}; nothing else changed"]
+    kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
+    return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
+
+
+def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult]:
+    """The results of a finished run in glyph index order, with empty glyphs and without failed ones."""
+    for entry in entries_of(out):
+        if entry["status"] == "empty":
+            yield GlyphResult(source.outline(entry["glyph"]), spec.options, ())
+        elif RESULTS in entry["files"]:
+            yield stored(out / RESULTS / Path(entry["files"][RESULTS]).name, GlyphResult)
+
+
+def _write_ufo(
+    source: Source, glyphs: Iterator[GlyphResult], path: Path | None, spec: RunSpec
+) -> tuple[list[str], Held]:  # fmt: skip
+    """Write a UFO; without a path into the source. Returns remarks, and what it holds."""
+    from ..plugins.fonts.ufo_folder import write_ufo
+
+    promises = dict[str, Promise]()
+
+    def each() -> Iterator[GlyphResult]:
+        for result in glyphs:
+            tolerance = spec.options.tolerance_for(result.outline.metrics.units_per_em)
+            promises.update({result.outline.name: promise} if (promise := Promise.of(result, tolerance)) else {})
+            yield result
+
+    if path is None or source.format == "UFO":
+        remarks = back_to_source(source, each(), spec, path)
+    else:
+        remarks = [f"{path.name}: {write_ufo(source, each(), path)} glyphs"]
+    path, layer = path or source.path, None if path else spec.layer
+    found = read_back(path, promises, layer)
+    near, far = found.words
+    return remarks + [f"{path.name}, as read back{near}{far}"] * bool(near), found
+
+
+def read_back(path: Path, promises: Mapping[str, Promise], layer: str | None) -> Held:
+    """What a written UFO holds of what was promised; with a layer, in that one where it has the glyph."""
+    from ..readers.ufo import Ufo
+
+    written: Any = Ufo.opened(path)
+    if layer:
+        with suppress(FontError):  # none is made if nothing changes
+            written.default_layer = ChainMap(written.layer(layer), written.default_layer)
+    return held(written, {name: each for name, each in promises.items() if name in written.gids})
+
+
+def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> tuple[list[str], Held]:
+    """Write a font; returns a remark, and what it holds."""
+    from ..plugins.fonts.tables.font_file import to_font
+    from ..plugins.fonts.tables.stored import compared, stored_facts
+
+    gids: list[int] = []
+
+    def each() -> Iterator[GlyphResult]:
+        for result in glyphs:
+            gids.append(result.outline.gid)
+            yield result
+
+    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
+    flavour: Literal["otf", "ttf"] = "otf" if path.suffix == ".otf" else "ttf"
+    data, summary = to_font(source, each(), flavour, tolerance=tolerance, family=spec.family_of(source))
+    write_whole(str(path), data, durable=True)
+    found = Held(summary.bounds, summary.beyond)
+    near, far = found.words
+    remark = f"{path.name}: {summary.replaced} glyphs replaced{near}"
+    if not spec.options.is_for_fonts:
+        splines = f", {summary.extrema} points added at extrema" if flavour == "otf" else ", as quadratics near these"
+        remark += f", as C2 splines (--continuity g2: fewer points){splines}"
+    remark += far
+    if len((new := open_font(path)).glyph_names) == len(source.glyph_names):
+        remark += f"; {compared(stored_facts(source, gids), stored_facts(new, gids))}"
+    return [remark], found

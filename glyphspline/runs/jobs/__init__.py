@@ -1,1 +1,0 @@
-"""What runs do with glyphs: the jobs of :mod:`..engine`."""

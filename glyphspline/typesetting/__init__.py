@@ -1,1 +1,0 @@
-"""Text: shaped, broken into lines, and put in place."""

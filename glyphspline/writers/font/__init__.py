@@ -1,1 +1,0 @@
-"""OTF and TTF files."""
