@@ -119,3 +119,18 @@ def sizes(folder: Path) -> dict[str, int]:
     with suppress(FileNotFoundError), os.scandir(folder) as items:
         return {item.name: item.stat(follow_symlinks=False).st_size for item in items if item.is_file()}
     return {}
+
+
+def is_url(name: str) -> bool:
+    """Whether a name is a URL; ``C:/`` is not."""
+    return re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", name) is not None
+
+
+def local_path(name: str) -> str | None:
+    """The path that a name stands for: itself, or that of a ``file://`` URL; None of another URL."""
+    if not is_url(name):
+        return name
+    from urllib.parse import urlsplit
+    from urllib.request import url2pathname  # here and not above: it imports what speaks HTTP
+
+    return url2pathname(urlsplit(name).path) if name.lower().startswith("file://") else None

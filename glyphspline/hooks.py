@@ -39,6 +39,7 @@ class Plugin:
     Attributes:
         commands: of the command line.
         formats: one file a glyph: a :class:`.writers.formats.Format` of that name.
+        whole: one file a font: a :class:`.writers.formats.WholeFormat` of that name.
         readers: sources: a :class:`.readers.open.Reader`.
         services: functions that the pipeline, or other plug-ins, call if they are there: see ``SERVICES``.
         work: kinds of work: functions without arguments that call all compiled functions of the kind.
@@ -47,6 +48,7 @@ class Plugin:
 
     commands: Mapping[str, Listed] = field(default_factory=dict)
     formats: Mapping[str, Place] = field(default_factory=dict)
+    whole: Mapping[str, Place] = field(default_factory=dict)
     readers: Mapping[str, Place] = field(default_factory=dict)
     services: Mapping[str, Place] = field(default_factory=dict)
     work: Mapping[str, Place] = field(default_factory=dict)
@@ -57,11 +59,15 @@ SERVICES: dict[str, str] = {
     "axis_pages": "pages of glyphs along an axis: see :func:`.masters.axis_pages.axis_pages`",
     "check_axis": "whether masters can be converted along an axis: source, tag, options",
     "convert_masters": "results in all masters: :class:`.Masters` and options to a ``MastersResult``",
+    "cluster": "an executor on a dask cluster: its address, the time limit of a batch, kinds of work",
+    "fetch_fonts": "fonts behind a URL, in the user's cache: a URL, suffixes of fonts",
+    "g2_fits": "fits of continuity g2: options, tolerance and em in font units, to :class:`.fitting.faithful.Fits`",
     "kink_report": "parts of checks along axes as one report: see :func:`.masters.kinks.kink_report`",
     "layout": "text on lines: see :func:`glyphspline.layout`",
     "no_joints": "numbers of no joints along an axis: a :class:`.DesignAxis`",
     "notebook": "display in notebooks: no arguments",
     "on_axes": "checks of glyphs along axes: see :func:`.masters.on_axes.on_axes`",
+    "refit_masters": "fits of a family in all masters: paths, the call of ``refit``, an axis or None, an executor",
     "text_document": "a text as SVG: a layout and the results of its distinct glyphs",
     "turns_figure": "the diagram of turns along axes: a source, a report, a format",
     "variations": "the masters of a variable font's glyphs: see :class:`.masters.variations.Variations`",

@@ -168,16 +168,3 @@ class RunOptions:
     json_log: bool = option(
         False, "Print progress and summary as JSON lines on standard error.", RUN, flags="--json-log"
     )
-
-
-@dataclass(frozen=True)
-class SingleFonts:
-    """Single fonts that become masters beside the first one, and their axis."""
-
-    others: list[Path] | None = option(
-        None, "Add the glyphs of this single font as masters beside FONT's, on --axis. Repeatable.",
-        WRITTEN, "FONT", flags="--from",
-    )  # fmt: skip
-    axis: str | None = option(
-        None, "Set the axis of such fonts, as wght=300:700, a value for each in turn.", WRITTEN, "TAG=A:B"
-    )

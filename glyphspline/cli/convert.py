@@ -13,7 +13,7 @@ from ..errors import GlyphsplineError, OutputError
 from ..runs.spec import RunSpec
 from ..types import listed
 from . import arguments as opt
-from .groups import bare
+from .groups import grouped
 from .messages import print_json, progress, say, stop
 from .tables import FontRun, runs_facts, runs_table, with_character
 
@@ -40,14 +40,13 @@ class Conversion:
     run: opt.RunOptions
 
 
-@bare
+@grouped
 def convert(
     fonts: opt.FontFiles,
     out: opt.Out,
     spec: RunSpec,
     subset: opt.Subset,
     instance: opt.Instance,
-    single: opt.SingleFonts,
     run: opt.RunOptions,
 ) -> bool:
     """Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index.
@@ -57,17 +56,12 @@ def convert(
     Of several fonts, or a folder, glob or list of them, every glyph is converted unless some are asked for.
     """
     call = Conversion(out, spec, subset, instance, run)
-    if spec.masters or single != opt.SingleFonts():
-        call = replace(call, spec=replace(spec, masters=True))
-        check_masters(call, single)
     with workplace(run.jobs, run.scheduler, call.spec) as executor:  # first: workers start while fonts are opened
         from ..runs.font_search import find_fonts
 
         found = find_fonts(fonts)
         if not found:
             stop("no fonts found")
-        if call.spec.masters:
-            return convert_masters(found, call, single, executor)
         alone = found == [Path(fonts[0])] and len(fonts) == 1
         runs = convert_fonts(found, call, executor, alone)
     if not (run.quiet or run.json_log or alone):
@@ -80,9 +74,9 @@ def convert(
 
 def workplace(jobs: int | None, scheduler: str | None, *specs: RunSpec) -> AbstractContextManager[Executor]:
     """The executor of runs: worker processes (None: one a core, 0: none, in this process), or a cluster."""
-    from ..runs.schedule import kinds_for, workers
+    from ..runs.schedule import workers
 
-    kinds = dict.fromkeys(kind for one in specs for kind in kinds_for(one.options, one.formats, one.masters))
+    kinds = dict.fromkeys(kind for one in specs for kind in one.kinds)
     return workers(jobs, specs[0].limits.seconds, kinds, 1, scheduler=scheduler)
 
 
@@ -161,42 +155,6 @@ def opened(font: Path, instance: opt.Instance, quiet: bool) -> Source:
     source = open_source(font, instance.face_index or 0, instance.place)
     say_face(source, instance, quiet)
     return source
-
-
-def check_masters(call: Conversion, single: opt.SingleFonts) -> None:
-    """Stop if the options of a run over masters clash."""
-    if bool(single.others) != bool(single.axis):
-        stop("--from FONT and --axis TAG=A:B go together")
-    for name, given, why in (
-        ("location", call.instance.location, "masters are of the whole design space"),
-        ("scheduler", call.run.scheduler, "masters are converted on this machine"),
-    ):
-        if given:
-            stop(f"--{name} is not for --masters: {why}")
-
-
-def convert_masters(fonts: Sequence[Path], call: Conversion, single: opt.SingleFonts, executor: Executor) -> bool:
-    """Convert a variable font, or single fonts that become one, in all masters; whether something was not done."""
-    from ..plugins.masters.job import convert_font_masters
-
-    if len(fonts) != 1:
-        stop("--masters takes one font")
-    run = call.run
-    sources = [opened(font, call.instance, run.quiet) for font in (*fonts, *(single.others or ()))]
-    names = chosen(sources[0], call.subset, run.quiet)
-    with progress(run.quiet, json_log=run.json_log) as observer:
-        summary = convert_font_masters(
-            sources, names, call.out, call.spec, executor, axis=single.axis, restart=not run.resume, observer=observer
-        )
-    facts = {"font": str(fonts[0]), "out": str(call.out), **summary.facts()}
-    if run.json_log:
-        say(json.dumps(facts))
-    elif not run.quiet:
-        for line in summary.lines():
-            say(line)
-    if run.as_json:
-        print_json(facts)
-    return bool(names.missing or summary.failed or summary.outside)
 
 
 def run_face(

@@ -16,17 +16,10 @@ from typer.core import TyperCommand
 
 from ..errors import OptionError
 from ..fields import CORNERS, About, Described, described, option, options_of, text_of
-from ..fitting.options import FONTS, FOR_FONTS, PRESETS, Options, Preset
+from ..fitting.options import PRESETS, Options, Preset
 from .messages import UNDONE, errors, listen
 
 Value = TypeVar("Value")
-
-
-MASTERS = {"masters", "others", "axis"}
-"""Options of runs over masters, whose curves are C2."""
-
-OTHER_CURVES = {"step", "count", "variant"}
-"""Options of the interpolation, which fonts' own curves do without."""
 
 
 BARE = {"--layer": "glyphspline"}
@@ -148,7 +141,7 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     found = {one.name: value for one in fields(kind) if (value := getattr(base, one.name)) != getattr(usual, one.name)}
     if kind is Options:
         preset = PRESETS.get(given.get("preset", ""), {})
-        found |= {**for_fonts({**preset, **given}), **preset}
+        found |= preset
     for name in (one.name for one in fields(kind) if shown(one.name)):
         if is_dataclass(value := getattr(base, name)):
             found[name] = collected(value, shown, given)
@@ -162,20 +155,6 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
             if len(words) > 2 and words[k] in known and words[1] in between:
                 words[k] = known[words[k]].flags[0]
         raise OptionError(" ".join(words)) from None
-
-
-def for_fonts(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Defaults of a run that writes only fonts and sources, unless what is given asks for other curves."""
-    formats = {*filter(None, map(str.strip, str(given.get("formats", "")).split(",")))}
-    formats |= {"ufo"} if given.get("in_place") or given.get("layer") is not None else set()
-    written = formats & FONTS
-    of_masters = not MASTERS.isdisjoint(given) and "ttf" in written
-    if not written or (of_masters and (written != {"ttf"} or "axis" in given)):
-        return {}  # quadratics beside cubics, and those of single fonts, are fitted to C2 curves
-    asks = formats - FONTS or not OTHER_CURVES.isdisjoint(given) or given.get("corners", "sharp") != "sharp"
-    if given.get("continuity", "c2" if asks else "g2") != "g2":
-        return {}
-    return FOR_FONTS
 
 
 def _expanded(base: Any, shown: Shown) -> Iterator[Parameter]:

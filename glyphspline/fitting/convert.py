@@ -9,6 +9,7 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
+from .. import hooks
 from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ..outlines.outline import Outline
@@ -187,9 +188,7 @@ def _convert_contours(
     if options.is_fixed:
         fits = Fits(1, lambda given, _: convert_fixed(given, options, tolerance), keeps_collapsed=False)
     elif options.is_for_fonts:
-        from ..plugins.fonts.fit.fit import font_fits
-
-        fits = font_fits(options, tolerance, em)
+        fits = hooks.service("g2_fits")(options, tolerance, em)
     elif options.corners == "sharp":
         from .sharp.sharp_fit import sharp_fits
 

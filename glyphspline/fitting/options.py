@@ -23,12 +23,6 @@ PRESETS: dict[str, dict[str, Any]] = {
 """Options set together: one smooth curve a contour as the paper has it; corners for type; and one smooth
 curve a contour, further from the noise of traced outlines, for brush."""
 
-FONTS = {"otf", "ttf", "ufo"}
-"""Formats of fonts, and of their sources."""
-
-FOR_FONTS: dict[str, Any] = {"corners": "sharp", "continuity": "g2", "precision": 0}
-"""Options of a run that writes only fonts, where nothing else is asked for: what fonts store."""
-
 
 @dataclass(frozen=True)
 class Options:
@@ -54,7 +48,7 @@ class Options:
             convergence. fallback: what footpoints do where chords are too uneven for Lemma 2 to have an interval,
             "knot" or "peak".
         max_ratio: bound on the ratio of adjacent chords.
-        precision: decimals written, 0 to 9.
+        precision: decimals written, 0 to 9. None is 2, of continuity "g2" 0; it is replaced by what it stands for.
         residual_tolerance: the solver's, in font units; None is half of the last decimal written.
         max_iterations: of the interpolation, for each contour.
         measure: also measure distance, length and curvature where fitting does not need them (``step``, ``count``).
@@ -102,14 +96,17 @@ class Options:
     continuity: Continuity = option(
         "c2",
         "Fit between corners one C2 spline (c2), or the fewest cubics whose tangents and curvatures meet, as fonts "
-        "store them (g2), of quadratics with more points: the default where only fonts are written.",
+        "store them (g2), of quadratics with more points.",
         CORNERS,
     )  # fmt: skip
     effort: Effort = option("fast", "Find the fewest points, which takes longer (best), or few (fast).", CLOSENESS)
     margin: float = 0.02
     fallback: Fallback = "peak"
     max_ratio: float = MAX_RATIO
-    precision: int = option(2, "Write this number of decimals, 0 to 9.", WRITTEN, "N", rule=whole(0, 9))
+    precision: int = option(
+        None, "Write this number of decimals, 0 to 9. Without it, 2; 0 with --continuity g2.", WRITTEN, "N",
+        rule=whole(0, 9),
+    )  # fmt: skip
     residual_tolerance: float | None = None
     max_iterations: int = Method.max_iterations
     measure: bool = option(False, "Measure distance, length and curvature with --step and --count too.", CLOSENESS)
@@ -118,6 +115,8 @@ class Options:
     def __post_init__(self) -> None:
         if self.corners is None:
             object.__setattr__(self, "corners", "smooth" if self.is_fixed else "sharp")
+        if self.precision is None:
+            object.__setattr__(self, "precision", 0 if self.is_for_fonts else 2)
         Method(
             self.variant, margin=self.margin, fallback=self.fallback, residual_tolerance=self.residual_tolerance,
             max_iterations=self.max_iterations,

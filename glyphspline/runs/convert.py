@@ -5,26 +5,22 @@ from __future__ import annotations
 import re
 import shlex
 import time
-from collections import ChainMap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from ..curves.curvature import Comb, shared_scale
-from ..errors import FontError, OutputError
+from ..errors import OutputError
 from ..extras import need
-from ..files import remove_partials, write_whole, writing
+from ..files import remove_partials, writing
 from ..fitting.results import GlyphResult, as_glyph
-from ..plugins.datasets.kept import Rows
-from ..plugins.fonts.read_back import Held, Promise, held
-from ..readers import Source, open_font
+from ..readers import Source
 from ..report import FOLDER as GALLERY
 from ..report.gallery import is_whole, write_index, write_report
-from ..types import Names, counted, shortened
-from ..writers.formats import format_named
+from ..types import Names
+from ..writers.formats import ResultsFormat, format_named
 from ..writers.svg.comb import combs
 from .engine import Item, Job, Observer, reason, run, settle
 from .file_names import file_names
@@ -46,12 +42,12 @@ from .folder import (
     unstated,
 )
 from .result_text import stored
-from .schedule import Place, heads_of, kinds_for, place_of, sources, workers
-from .spec import MAPS, OF_RUNS, PARQUET, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
-from .summary import NAMED, Summary
+from .schedule import Place, heads_of, place_of, sources, workers
+from .spec import MAPS, OF_RUNS, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
+from .summary import Summary
 
 if TYPE_CHECKING:
-    from ..plugins.fonts.tables.master_deltas import Redrawn
+    pass
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -148,18 +144,16 @@ def convert_font(
     started = time.perf_counter()
     spec = spec or RunSpec()
     require_libraries(spec)
-    check_back(source, spec)
     with locked(out):
-        table = next((path for path in font_files(source, out, spec) if path.suffix == f".{PARQUET}"), None)
+        table = spec.table.path(source, out) if spec.table else None
         prepare(out, spec, describe(source, spec, glyphs, None), restart, table)
-        rows = Rows(table, source.sha256) if table else None
+        rows = spec.table.kept(table, source.sha256) if spec.table and table else None
         record = read_record(out, rows)
         finished = record.finished()
         summary = Summary()
         # Workers start while the tasks are listed; none do if all glyphs are finished.
         expected = len({*glyphs}.difference([source.glyph_names[gid] for gid in finished]))
-        kinds = kinds_for(spec.options, spec.formats)
-        with workers(jobs if expected else 0, spec.limits.seconds, kinds, expected, executor=executor) as pool:
+        with workers(jobs if expected else 0, spec.limits.seconds, spec.kinds, expected, executor=executor) as pool:
             tasks = tasks_of(source, glyphs, spec.names)
             left = [task for task in tasks if task.head.gid not in finished]
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
@@ -174,14 +168,13 @@ def convert_font(
         concluded = (out / MANIFEST).exists() and not (out / JOURNAL).exists()
         if left or not concluded or (gallery and not is_whole(out, len(record.where))):
             conclude(out, record, gallery, unstated)
-        holds = is_stated(out) or {*spec.whole} <= {PARQUET}
-        holds = holds and all(path.exists() for path in font_files(source, out, spec))
-        if left or (rows and rows.added) or not holds:
-            summary.remarks += write_fonts(source, out, spec, rows)
-        if spec.is_back:
-            remarks, found = _write_ufo(source, results_of(source, out, spec), None, spec)
-            summary.remarks += remarks
-            state(out, {"source": found.facts()})
+        if table and rows and (rows.added or not table.exists()):
+            summary.remarks.append(f"{table.name}: {rows.write(entry['gid'] for entry in entries_of(out))} contours")
+        files = [(each, each.path(source, out)) for each in spec.files]
+        if not (left or not is_stated(out) or not all(path.exists() for _, path in files)):
+            files = [(each, path) for each, path in files if each.always]
+        if files:
+            summary.remarks += write_files(source, out, spec, files)
         for entry in entries_of(out):
             summary.add(entry)
     summary.missing = getattr(glyphs, "missing", ())
@@ -196,7 +189,7 @@ def convert_font(
 def require_libraries(spec: RunSpec) -> None:
     """Raise a GlyphsplineError before the run starts if a library that it needs is not installed."""
     extras = [format_named(name).extra for name in spec.folders if name not in OF_RUNS]
-    extras += ["parquet"] * ("parquet" in spec.whole) + ["overlaps"] * spec.options.remove_overlaps
+    extras += [each.extra for each in spec.whole] + ["overlaps"] * spec.options.remove_overlaps
     for extra in filter(None, extras):
         need(extra)
 
@@ -252,69 +245,20 @@ def write_gallery(folder: Path) -> None:
         write_index(folder, [path.relative_to(folder).as_posix() for path in below], f"{len(below)} fonts")
 
 
-def font_files(source: Source, out: Path, spec: RunSpec) -> list[Path]:
-    """The run's files of the formats with one file a font."""
-    stem = (re.sub(r"[^\w-]+", "", source.family)[:50] or "font") + "-spline"
-    return [out / f"{stem}.{name}" for name in spec.whole]
-
-
-def write_fonts(source: Source, out: Path, spec: RunSpec, rows: Rows | None) -> list[str]:
-    """Write the formats with one file a font, of all glyphs of the folder's manifest; returns remarks for the summary.
+def write_files(source: Source, out: Path, spec: RunSpec, files: Sequence[tuple[ResultsFormat, Path]]) -> list[str]:
+    """Write files of the whole font, of all glyphs of the folder's manifest; returns remarks for the summary.
 
     Raises:
         OutputError: a file cannot be written, or a stored result cannot be read.
         GlyphsplineError: the source cannot become such a font.
     """
-    remarks, stored = [], dict[str, dict[str, Any]]()
-    for path in font_files(source, out, spec):
-        kind, glyphs = path.suffix[1:], results_of(source, out, spec)
+    remarks, held = [], dict[str, Mapping[str, Any]]()
+    for whole, path in files:
         with writing(path):
-            if kind == PARQUET:
-                assert rows is not None
-                remarks.append(f"{path.name}: {rows.write(entry['gid'] for entry in entries_of(out))} contours")
-                continue
-            written, found = (_write_ufo if kind == "ufo" else _write_font)(source, glyphs, path, spec)
+            written, held[whole.name] = whole.write(source, results_of(source, out, spec), path, spec)
         remarks += written
-        stored[kind] = found.facts()
-    if stored:
-        state(out, stored)
+    state(out, held)
     return remarks
-
-
-def check_back(source: Source, spec: RunSpec) -> None:
-    """Raise before the run if outlines cannot go back into the source."""
-    if not spec.is_back:
-        return
-    from ..plugins.fonts.back.back import editable
-    from ..readers.ufo import Ufo
-
-    if not isinstance(editable(source), Ufo):
-        raise OutputError("the outlines of a designspace go back in all masters: add --masters", font=str(source.path))
-
-
-def back_to_source(
-    source: Source, glyphs: Iterable[GlyphResult] | Mapping[str, Redrawn], spec: RunSpec, copy: Path | None = None
-) -> list[str]:
-    """Write results into the source, a UFO, or those of all masters into a designspace; or into a copy of it.
-
-    Returns remarks for the summary.
-
-    Raises:
-        OutputError: a file cannot be written.
-    """
-    from ..plugins.fonts.back.back import of_masters, of_results, write_back
-    from ..readers.ufo import Ufo
-
-    own: Any = source
-    new = of_masters(own, glyphs) if isinstance(glyphs, Mapping) else of_results(own, glyphs)
-    with writing(copy or source.path):
-        found = write_back(own, new, spec.options.precision, copy=copy, layer=None if copy else spec.layer)
-    where = copy.name if copy else f"layer {spec.layer} of {source.path.name}" if spec.layer else source.path.name
-    curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
-    curves += "" if isinstance(source, Ufo) else ", in all masters"
-    remarks = [f"{where}: new outlines of {counted(len(found.names), 'glyph')}, {curves}; nothing else changed"]
-    kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
-    return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
 
 
 def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult]:
@@ -324,66 +268,3 @@ def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult
             yield GlyphResult(source.outline(entry["glyph"]), spec.options, ())
         elif RESULTS in entry["files"]:
             yield stored(out / RESULTS / Path(entry["files"][RESULTS]).name, GlyphResult)
-
-
-def _write_ufo(
-    source: Source, glyphs: Iterator[GlyphResult], path: Path | None, spec: RunSpec
-) -> tuple[list[str], Held]:  # fmt: skip
-    """Write a UFO; without a path into the source. Returns remarks, and what it holds."""
-    from ..plugins.fonts.ufo_folder import write_ufo
-
-    promises = dict[str, Promise]()
-
-    def each() -> Iterator[GlyphResult]:
-        for result in glyphs:
-            tolerance = spec.options.tolerance_for(result.outline.metrics.units_per_em)
-            promises.update({result.outline.name: promise} if (promise := Promise.of(result, tolerance)) else {})
-            yield result
-
-    if path is None or source.format == "UFO":
-        remarks = back_to_source(source, each(), spec, path)
-    else:
-        remarks = [f"{path.name}: {write_ufo(source, each(), path)} glyphs"]
-    path, layer = path or source.path, None if path else spec.layer
-    found = read_back(path, promises, layer)
-    near, far = found.words
-    return remarks + [f"{path.name}, as read back{near}{far}"] * bool(near), found
-
-
-def read_back(path: Path, promises: Mapping[str, Promise], layer: str | None) -> Held:
-    """What a written UFO holds of what was promised; with a layer, in that one where it has the glyph."""
-    from ..readers.ufo import Ufo
-
-    written: Any = Ufo.opened(path)
-    if layer:
-        with suppress(FontError):  # none is made if nothing changes
-            written.default_layer = ChainMap(written.layer(layer), written.default_layer)
-    return held(written, {name: each for name, each in promises.items() if name in written.gids})
-
-
-def _write_font(source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> tuple[list[str], Held]:
-    """Write a font; returns a remark, and what it holds."""
-    from ..plugins.fonts.tables.font_file import to_font
-    from ..plugins.fonts.tables.stored import compared, stored_facts
-
-    gids: list[int] = []
-
-    def each() -> Iterator[GlyphResult]:
-        for result in glyphs:
-            gids.append(result.outline.gid)
-            yield result
-
-    tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
-    flavour: Literal["otf", "ttf"] = "otf" if path.suffix == ".otf" else "ttf"
-    data, summary = to_font(source, each(), flavour, tolerance=tolerance, family=spec.family_of(source))
-    write_whole(str(path), data, durable=True)
-    found = Held(summary.bounds, summary.beyond)
-    near, far = found.words
-    remark = f"{path.name}: {summary.replaced} glyphs replaced{near}"
-    if not spec.options.is_for_fonts:
-        splines = f", {summary.extrema} points added at extrema" if flavour == "otf" else ", as quadratics near these"
-        remark += f", as C2 splines (--continuity g2: fewer points){splines}"
-    remark += far
-    if len((new := open_font(path)).glyph_names) == len(source.glyph_names):
-        remark += f"; {compared(stored_facts(source, gids), stored_facts(new, gids))}"
-    return [remark], found

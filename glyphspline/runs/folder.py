@@ -29,10 +29,10 @@ from filelock import FileLock, Timeout
 
 from ..errors import OutputError, words_of
 from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, write_all, writing
-from ..plugins.datasets.kept import Rows, remove_unfinished
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from ..types import Head
+from ..writers.formats import KeptRows
 from .engine import Job, Observer, Part, run
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
 
@@ -266,16 +266,16 @@ def prepare(out: Path, spec: RunSpec, run: dict[str, Any], restart: bool, table:
     """Make the folders of a run, and remove what is there of one that does not go on.
 
     Args:
-        run: the content of ``run.json``. table: of contours, if the run has one.
+        run: the content of ``run.json``. table: its path, if the run has one.
 
     Raises:
         OutputError: a run with other options is there, and ``restart`` is not given.
     """
     old = None if restart else read_run(out)
     if old is None:
-        if table:
+        if table and spec.table:
             table.unlink(missing_ok=True)
-            remove_unfinished(out)
+            spec.table.forget(out)
         remove_written(out)
         remove_gallery(out)
         for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
@@ -297,7 +297,7 @@ def recorded(
     record: Record,
     out: Path,
     observer: Observer | None,
-    rows: Rows | None = None,
+    rows: KeptRows | None = None,
 ) -> Iterator[Part[Task, list[Done]]]:
     """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on.
 

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from ..errors import GlyphsplineError
-from ..files import reading
-from ..plugins.datasets.remote import fetch_fonts, local_path
+from ..files import local_path, reading
+from ..hooks import service
 from ..readers.open import STDIN, open_source
 from ..readers.source import Location, Source
 
@@ -34,7 +34,7 @@ def find_fonts(inputs: Iterable[str]) -> list[Path]:
 def _found(item: str) -> Iterator[Path]:
     local = local_path(item)
     if local is None:
-        yield from fetch_fonts(item, SUFFIXES)
+        yield from service("fetch_fonts")(item, SUFFIXES)
         return
     item, path = local, Path(local)
     if item.startswith("@"):

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..code_files import kept
 from ..fitting.options import Options
+from ..hooks import service
 from ..types import Head
 from .choice import SLOWNESS, Choice
 from .pool import WorkerPool
@@ -95,14 +96,11 @@ class InProcess(Executor):
         sources.cache_clear()
 
 
-def kinds_for(options: Options | None, formats: Sequence[str] = (), masters: bool = False) -> list[str]:
+def kinds_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
     """The kinds of work of :mod:`.warm` in a run with these options; None: nothing is converted."""
     if options is None:
         return []
-    quadratics = ["quadratics"] if "ttf" in formats else []
-    if masters:
-        return ["masters", *(["g2"] if options.is_for_fonts else []), *quadratics]
-    rest = [*quadratics, *(["rest"] if options.remove_overlaps else [])]
+    rest = ["rest"] if options.remove_overlaps else []
     if formats and not needs_fit(formats, options):
         return ["unfitted", *rest]
     fit = "g2" if options.is_for_fonts else options.corners
@@ -138,9 +136,8 @@ def workers(
         return nullcontext(executor)
     kinds = tuple(kinds)
     if scheduler is not None:
-        from ..plugins.datasets.cluster import ClusterExecutor
-
-        return ClusterExecutor(scheduler, seconds, kinds)
+        found: AbstractContextManager[Executor] = service("cluster")(scheduler, seconds, kinds)
+        return found
     size = jobs or os.cpu_count() or 1
     made = InProcess(kinds) if jobs == 0 else Workers(size, seconds, kinds, expected)
     made.choice.sources = count

@@ -10,8 +10,9 @@ from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from .. import hooks
 from .._version import __version__
 from ..errors import GlyphsplineError, OptionError, is_positive, require
 from ..fields import WRITTEN, arguments, check, instance_arguments, option
@@ -20,7 +21,16 @@ from ..fitting.options import Options
 from ..report import FOLDER as GALLERY
 from ..report import SUFFIX
 from ..types import Names
-from ..writers.formats import OURS, format_named, format_names, is_format
+from ..writers.formats import (
+    OURS,
+    ResultsFormat,
+    TableFormat,
+    WholeFormat,
+    format_named,
+    format_names,
+    is_format,
+    whole_named,
+)
 from ..writers.settings import Maps, Settings
 
 if TYPE_CHECKING:
@@ -39,15 +49,10 @@ OF_RUNS = {GALLERY: SUFFIX, POLYGON: ".svg", RESULTS: ".json"}
 MAPS = {"curvature", "curvature-png", "curvature-pdf"}
 """Formats of curvature maps, which share a scale."""
 
-PARQUET = "parquet"
-
-WHOLE = ("ufo", "otf", "ttf", PARQUET)
-"""Formats with one file a font."""
-
 
 def available() -> tuple[str, ...]:
     """The formats that a run can have, those of plug-ins too, in the order in which a run lists them."""
-    return (*format_names(), GALLERY, *WHOLE)
+    return (*format_names(), GALLERY, *hooks.names("whole"))
 
 
 def suffix_of(name: str) -> str:
@@ -61,10 +66,12 @@ def is_folder(name: str) -> bool:
 
 
 def needs_fit(formats: Sequence[str], options: Options) -> bool:
-    """Whether any of these formats is made of fitted curves: others show outlines as the font has them, and with
-    continuity "g2" a TTF is made of these too."""
-    others = [name for name in formats if not (name == "ttf" and options.is_for_fonts)]
-    return not all(is_format(name) and not format_named(name).fitted for name in others)
+    """Whether any of these formats is made of fitted curves: others show outlines as the font has them."""
+    for name in formats:
+        whole = None if name == GALLERY or is_format(name) else whole_named(name)
+        if whole.is_fitted(options) if whole else name == GALLERY or format_named(name).fitted:
+            return True
+    return False
 
 
 @dataclass(frozen=True)
@@ -103,9 +110,7 @@ class RunSpec:
         options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
-        masters: all masters of a variable font at once; see :mod:`.jobs.masters`.
-        keep_name: whether written fonts have the source's family name.
-        in_place, layer: write new outlines into the source, in place of the old ones or into a layer beside them.
+        verb: the command of such a run.
 
     Raises:
         OptionError: one of these is none of what it can be.
@@ -115,7 +120,7 @@ class RunSpec:
     options: Options = field(default_factory=Options)
     formats: tuple[str, ...] = option(
         ("svg", "curvature", GALLERY),
-        f"Write these formats: {', '.join(OURS)}, {GALLERY}, {', '.join(WHOLE)}, and those of plug-ins.",
+        f"Write these formats: {', '.join(OURS)}, {GALLERY}, and those of plug-ins, as dxf and parquet.",
         WRITTEN, "NAME,…", flags="--format",
     )  # fmt: skip
     settings: Settings = field(default_factory=Settings)
@@ -124,96 +129,77 @@ class RunSpec:
     )
     limits: Limits = LIMITS
     maps: Maps = field(default_factory=Maps)
-    masters: bool = option(
-        False,
-        "Convert all masters of a variable font at once, to a variable font (--format otf, ttf), designspace (ufo), "
-        "drawings of the default (svg) or a page with a slider for each axis (gallery).",
-        WRITTEN,
-    )  # fmt: skip
-    keep_name: bool = option(
-        False, "Keep the family name in an otf or ttf. Licences reserve the names of fonts that are not your own.",
-        WRITTEN,
-    )  # fmt: skip
-    in_place: bool = option(
-        False, "Write new outlines into the source, a UFO, designspace or Glyphs file. Nothing else in it changes.",
-        WRITTEN,
-    )  # fmt: skip
-    layer: str | None = option(
-        None, "Write new outlines into this layer of the source, beside the old ones: glyphspline without a NAME.",
-        WRITTEN, "[NAME]",
-    )  # fmt: skip
+    verb: ClassVar[str] = "convert"
 
     def __post_init__(self) -> None:
-        if self.in_place and self.layer is not None:
-            raise OptionError("give --in-place or --layer, not both")
-        if self.is_back and self.options.remove_overlaps:
-            raise OptionError("--remove-overlaps makes other contours, which cannot go back into the source")
         if isinstance(self.formats, str):
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
-        if not self.formats:
+        if not (self.formats or self.whole):
             raise OptionError(f"no format given: there are {', '.join(available())}")
-        own = [name for name in self.formats if name not in (GALLERY, *WHOLE)]
-        for name in own:
-            if not (isinstance(name, str) and is_format(name)):
-                raise OptionError(f"no format {name}: there are {', '.join(available())}")
-            format_named(name)  # raises where a plug-in is broken
+        for name in self.formats:
+            if not isinstance(name, str) or not (name == GALLERY or is_format(name) or whole_named(name)):
+                raise OptionError(f"no format {name}: there are {', '.join(available())}{hooks.away_words()}")
+            if name != GALLERY and is_format(name):
+                format_named(name)  # raises where a plug-in is broken
+        for whole in self.whole:
+            if whole.verb != self.verb:
+                line = f"glyphspline {whole.verb} FONT --format {whole.name} --out DIR"
+                raise OptionError(f"{self.verb} does not write {whole.name}: {line}")
+        if sum(isinstance(whole, TableFormat) for whole in self.whole) > 1:
+            raise OptionError("a run writes one table")
         check(self)
         for name, kind in (("options", Options), ("settings", Settings), ("limits", Limits), ("maps", Maps)):
             if not isinstance(getattr(self, name), kind):
                 raise GlyphsplineError(f"{name} are {kind.__name__}")
         self.settings.look.line(1.0)  # raises for a width on paper without a size
-        order = OURS if set(own) <= OURS.keys() else format_names()
-        given = [name for name in (*order, GALLERY, *WHOLE) if name in self.formats]
-        object.__setattr__(self, "formats", tuple(given))
+        known = {*OURS, GALLERY}.issuperset(self.formats)
+        order = (*OURS, GALLERY) if known else available()
+        object.__setattr__(self, "formats", tuple(name for name in order if name in self.formats))
 
-    def family_of(self, source: Source) -> str:
-        """The family name of an otf or ttf."""
-        return source.family if self.keep_name else f"{source.family} Spline"
+    @cached_property
+    def whole(self) -> tuple[WholeFormat, ...]:
+        """The run's formats with one file a font."""
+        others = [name for name in self.formats if name != GALLERY and name not in OURS]
+        return tuple(found for name in others if not is_format(name) and (found := whole_named(name)))
 
     @property
-    def is_back(self) -> bool:
-        """Whether outlines are written into the source."""
-        return self.in_place or self.layer is not None
+    def table(self) -> TableFormat | None:
+        """The one of rows among them."""
+        return next((whole for whole in self.whole if isinstance(whole, TableFormat)), None)
+
+    @property
+    def files(self) -> tuple[ResultsFormat, ...]:
+        """Those that are made of results."""
+        return tuple(whole for whole in self.whole if isinstance(whole, ResultsFormat))
+
+    @property
+    def kinds(self) -> list[str]:
+        """The kinds of work of the run, see :func:`.small_runs.work`."""
+        from .schedule import kinds_for
+
+        return kinds_for(self.options, self.formats)
 
     @cached_property
     def is_fitted(self) -> bool:
         """Whether the workers fit curves."""
-        return self.is_back or self.masters or needs_fit(self.formats, self.options)
+        return needs_fit(self.formats, self.options)
 
     @cached_property
     def folders(self) -> tuple[str, ...]:
         """The folders written to: one for each format with one file a glyph, and those that other formats need."""
-        own = tuple(name for name in self.formats if name not in WHOLE)
-        polygon = [POLYGON] if GALLERY in own and not self.masters else []
-        # Fonts are made of results. The rows of a table are kept elsewhere.
-        results = [RESULTS] if self.masters or self.is_back or not {*self.whole} <= {PARQUET} else []
-        return (*own, *polygon, *results)
-
-    @property
-    def whole(self) -> tuple[str, ...]:
-        """The run's formats with one file a font."""
-        return tuple(name for name in self.formats if name in WHOLE)
+        whole = {each.name for each in self.whole}
+        own = tuple(name for name in self.formats if name not in whole)
+        return (*own, *([POLYGON] if GALLERY in own else []), *([RESULTS] if self.files else []))
 
     def fitting(self, units_per_em: float) -> Options:
-        """The options of the conversion. If a font is written, its rounding is subtracted from the tolerance.
-
-        With continuity "g2" results are on the font's grid, and quadratics are not made of them. Other curves are
-        certified as they are rounded to the precision, and an otf has them as they are; a UFO has points at extrema of
-        these, which are rounded once more.
-        """
-        g2, tolerance, left = self.options.is_for_fonts, self.options.tolerance_for(units_per_em), list[float]()
-        if self.options.is_fixed or not (self.is_back or {*self.whole} - {PARQUET}):
-            return self.options
-        from ..plugins.fonts.tables.font_glyphs import ROUNDING, fitting_tolerance
-
-        rounding = 0.0 if g2 else ROUNDING * 10.0**-self.options.precision
-        if self.is_back or "ufo" in self.formats:
-            left.append(max(tolerance - 2 * rounding, tolerance / 2))
-        if "otf" in self.formats:
-            left.append(max(fitting_tolerance(tolerance, "otf") - rounding, tolerance / 2))
-        if "ttf" in self.formats and not g2:
-            left.append(fitting_tolerance(tolerance, "ttf"))
+        """The options of the conversion: what writing a font may take of the tolerance is subtracted from it."""
+        tolerance = self.options.tolerance_for(units_per_em)
+        left = [] if self.options.is_fixed else [each.share(self.options, tolerance) for each in self.files]
         return replace(self.options, tolerance=min(left)) if left else self.options
+
+    def facts(self) -> dict[str, Any]:
+        """What ``run.json`` says of the run beside the options that all runs have."""
+        return {}
 
 
 REQUEST = ("command", "selection", "selected", "missing")
@@ -254,11 +240,9 @@ def describe(
         **asdict(spec.maps),
         "flatness": spec.settings.flatness,
         "dxf": spec.settings.dxf,
-        **({"keep_name": True} if spec.keep_name else {}),
-        **({"in_place": spec.in_place, "layer": spec.layer} if spec.is_back else {}),
         "names": spec.names,
         "curvature_scale": curvature_scale,
-        **({"masters": True} if spec.masters else {}),
+        **spec.facts(),
         **({"from": [font_facts(other) for other in others], "axis": axis} if others else {}),
     }
 
@@ -280,7 +264,7 @@ def command(
     source: Source, spec: RunSpec, asked: dict[str, Any], others: Sequence[Source] = (), axis: str | None = None
 ) -> Iterator[str]:
     """The arguments of the command line that make the run's files, without the folder: what is not default."""
-    yield from ("glyphspline", "convert", source.path.name)
+    yield from ("glyphspline", spec.verb, source.path.name)
     for other in others:
         yield from ("--from", other.path.name)
     if axis is not None:
@@ -290,7 +274,7 @@ def command(
         if name != "all":
             yield value if isinstance(value, str) else ",".join(map(str, value))
     yield from instance_arguments(source.face_index, source.location)
-    words = arguments(spec, RunSpec())
+    words = arguments(spec, type(spec)())
     formats = words.pop("formats", [])
     yield from (*chain(*words.values()), *formats)
 

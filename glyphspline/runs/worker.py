@@ -25,7 +25,7 @@ from ..writers.svg.path_data import PathData, curves_data
 from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
-from .spec import MAPS, PARQUET, POLYGON, RESULTS, Limits, suffix_of
+from .spec import MAPS, POLYGON, RESULTS, Limits, suffix_of
 
 # The process that opens a font for the run reports what fontTools says of it; workers would say it once more each.
 logging.getLogger("fontTools").addHandler(logging.NullHandler())
@@ -85,13 +85,9 @@ def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Out
 
 
 def rows_of(job: Output, results: list[GlyphResult]) -> bytes:
-    """The rows of a batch as an IPC stream; none if there is no table, or no contour."""
-    if PARQUET not in job.spec.whole or not any(result.contours for result in results):
-        return b""
-    from ..plugins.datasets.kept import streamed
-    from ..plugins.datasets.table import rows  # imports pyarrow
-
-    return streamed(rows(job.font, results))
+    """The rows of a batch; none if there is no table, or no contour."""
+    table = job.spec.table
+    return table.rows(job.font, results) if table and any(result.contours for result in results) else b""
 
 
 class Glyph(NamedTuple):

@@ -15,4 +15,6 @@ PLUGIN = Plugin(
         )
     },
     work={"points": ".work:points"},
+    whole={"parquet": ".formats:PARQUET"},
+    services={"cluster": ".cluster:ClusterExecutor", "fetch_fonts": ".remote:fetch_fonts"},
 )

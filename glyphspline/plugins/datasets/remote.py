@@ -22,7 +22,7 @@ from urllib.parse import unquote, urlsplit
 
 from ...errors import FontError, GlyphsplineError, OutputError, words_of
 from ...extras import need
-from ...files import make_folder, remove_partials, replacing, sizes, writing
+from ...files import is_url, local_path, make_folder, remove_partials, replacing, sizes, writing
 
 WHOLE = frozenset({"s3", "s3a", "gs", "gcs", "abfs", "abfss", "az", "memory"})
 """Protocols of stores that have a file whole or not at all."""
@@ -34,20 +34,6 @@ PASSING = ("ConnectionError", "TimeoutError", "HTTPClientError", "ClientConnecti
 """Errors of a connection, by the names of their classes: libraries of providers have types of their own."""
 
 Value = TypeVar("Value")
-
-
-def is_url(name: str) -> bool:
-    """Whether a name is a URL; ``C:/`` is not."""
-    return re.match(r"[A-Za-z][A-Za-z0-9+.-]+://", name) is not None
-
-
-def local_path(name: str) -> str | None:
-    """The path that a name stands for: itself, or that of a ``file://`` URL; None of another URL."""
-    if not is_url(name):
-        return name
-    from urllib.request import url2pathname  # here and not above: it imports what speaks HTTP
-
-    return url2pathname(urlsplit(name).path) if name.lower().startswith("file://") else None
 
 
 def shown(url: str) -> str:

@@ -16,6 +16,7 @@ PLUGIN = Plugin(
         "kink_report": ".kinks:kink_report",
         "no_joints": ".kinks:no_joints",
         "on_axes": ".on_axes:on_axes",
+        "refit_masters": ".job:refit_masters",
         "turns_figure": ".axis_pages:turns_figure",
         "variations": ".variations:Variations",
     },

@@ -14,11 +14,11 @@ from dataclasses import asdict, dataclass, replace
 from functools import partial
 from math import inf, isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from ...errors import GlyphsplineError, OutputError
+from ...errors import GlyphsplineError, OptionError, OutputError
 from ...files import remove_partials, write_whole, writing
 from ...fitting.options import Options
 from ...fitting.results import ContourResults, GlyphResult, not_fitted
@@ -28,7 +28,7 @@ from ...readers import Font, Source
 from ...report import FOLDER as GALLERY
 from ...report.data import contours_in
 from ...runs.choice import USUAL
-from ...runs.convert import back_to_source, check_back, font_files, tasks_of
+from ...runs.convert import tasks_of
 from ...runs.engine import Item, Job, Observer, reason
 from ...runs.folder import (
     Done,
@@ -52,6 +52,9 @@ from ...types import FloatArray, MadeOnDemand, counted, listed, rounded_up
 from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
+from ..fonts.back.back import editable, of_masters
+from ..fonts.formats import back_to_source
+from ..fonts.spec import RefitSpec
 from ..fonts.tables.font_glyphs import SHARE, Flavour
 from ..fonts.tables.master_deltas import Redrawn, StoredGlyph, bound_of
 from .convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
@@ -59,6 +62,8 @@ from .designspace import Designspace, GlyphsFile
 from .single_fonts import Unmatched, axis_of, masters_of_fonts
 
 if TYPE_CHECKING:
+    from ...cli.convert import Conversion
+    from ...readers import Selection
     from .variable_font import VariableSummary
 
 FORMATS = (*OURS, GALLERY, "ufo", "otf", "ttf")
@@ -169,7 +174,7 @@ def convert_font_masters(
     sources: Sequence[Source],
     glyphs: Sequence[str],
     out: Path,
-    spec: RunSpec,
+    spec: RefitSpec,
     executor: Executor,
     *,
     axis: str | None = None,
@@ -232,17 +237,17 @@ def _with_written(kept: Mapping[str, str], stored: Mapping[str, Any], line: byte
     return f"{_encoded(entry | {'stored': stored.get(name), 'kept': kept.get(name)})}\n".encode()
 
 
-def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
+def _check(sources: Sequence[Source], spec: RefitSpec, axis: str | None) -> None:
     """Raise before the run if its options are not for masters, or a format cannot be written."""
     font = sources[0]
-    given = () if spec.is_back and spec.formats == RunSpec().formats else spec.formats
-    if unknown := [name for name in given if name not in FORMATS]:
+    if unknown := [name for name in spec.formats if name not in FORMATS]:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     check_options(spec.options)
-    if in_quadratics(spec) and (axis is not None or not isinstance(font, Font) or {"otf", "ufo"} & {*given}):
+    if in_quadratics(spec) and (axis is not None or not isinstance(font, Font) or {"otf", "ufo"} & {*spec.formats}):
         raise GlyphsplineError('beside otf and ufo, and of single fonts, ttf is made of curves of continuity "c2"')
     if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
-        check_back(font, spec)
+        editable(font)
+        raise OutputError("the outlines of a UFO go back without --masters", font=str(font.path))
     if axis is not None:
         axis_of(axis, len(sources))
         if "otf" in spec.formats:
@@ -256,7 +261,7 @@ def _check(sources: Sequence[Source], spec: RunSpec, axis: str | None) -> None:
         flavour_of(font)
 
 
-def _flavours(spec: RunSpec) -> list[Flavour]:
+def _flavours(spec: RefitSpec) -> list[Flavour]:
     return [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
 
 
@@ -318,7 +323,7 @@ def _replaced(path: Path, facts: VariableSummary, bounds: Sequence[float]) -> st
 
 
 def _font(
-    sources: Sequence[Source], redrawn: Mapping[str, Redrawn], flavour: Flavour, spec: RunSpec, axis: str | None
+    sources: Sequence[Source], redrawn: Mapping[str, Redrawn], flavour: Flavour, spec: RefitSpec, axis: str | None
 ) -> tuple[bytes, VariableSummary]:
     """A variable font of the new contours: the source's own, with outlines of its kind or the other, or a new one."""
     from ..fonts.tables.other_outlines import to_other_outlines
@@ -342,14 +347,14 @@ def _write_fonts(
     sources: Sequence[Source],
     redrawn: Mapping[str, Redrawn],
     out: Path,
-    spec: RunSpec,
+    spec: RefitSpec,
     summary: MastersSummary,
     axis: str | None,
 ) -> tuple[dict[str, str], dict[str, Any]]:
     """Write the run's fonts; returns why glyphs of them have their old outlines, and what is stored of the others."""
     source, stays, stored = sources[0], dict[str, str](), dict[str, Any]()
     tolerance = spec.options.tolerance_for(source.metrics.units_per_em)
-    paths = {path.suffix[1:]: path for path in font_files(source, out, spec)}
+    paths = {each.name: each.path(source, out) for each in spec.files}
     for flavour in _flavours(spec):
         path = paths[flavour]
         with writing(path):
@@ -364,7 +369,7 @@ def _write_fonts(
         if copy and isinstance(source, GlyphsFile):
             copy = copy.with_suffix(".glyphs")
         for to in [copy] * ("ufo" in spec.formats) + [None] * spec.is_back:
-            summary.remarks += back_to_source(source, redrawn, spec, to)
+            summary.remarks += back_to_source(source, of_masters(source, redrawn), spec, to)
     elif "ufo" in spec.formats:
         from ..fonts.ufo_folder import write_designspace
 
@@ -375,3 +380,28 @@ def _write_fonts(
         named = listed([*stays][:NAMED], len(stays))
         summary.remarks.append(f"{counted(len(stays), 'glyph')} as it was: {named}; the manifest says why")
     return stays, stored
+
+
+def refit_masters(
+    paths: Sequence[Path], call: Conversion, axis: str | None, executor: Executor
+) -> tuple[Selection, MastersSummary]:
+    """Fit a variable font or designspace, or single fonts that become one, in all masters.
+
+    Args:
+        paths: one, or with an ``axis`` several. call: of ``refit``.
+
+    Returns:
+        The glyphs that were asked for, and the summary.
+    """
+    if (len(paths) > 1) != (axis is not None):
+        raise OptionError("several fonts become masters on --axis TAG=A:B; one font has masters of its own")
+    from ...cli.convert import chosen, opened
+    from ...cli.messages import progress
+
+    run, spec = call.run, cast(RefitSpec, call.spec)
+    sources = [opened(path, call.instance, run.quiet) for path in paths]
+    names = chosen(sources[0], call.subset, run.quiet)
+    with progress(run.quiet, json_log=run.json_log) as observer:
+        return names, convert_font_masters(
+            sources, names, call.out, spec, executor, axis=axis, restart=not run.resume, observer=observer
+        )

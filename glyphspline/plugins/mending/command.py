@@ -17,10 +17,10 @@ from ...errors import OptionError
 from ...fields import WRITTEN, About
 from ...files import make_folder
 from ...outlines.flaws.kinds import MENDED, MENDED_UNASKED
-from ...runs.spec import RunSpec
 from ...types import counted, rounded_up, shortened
 from ..checks.command import thresholds_of
 from ..checks.options import FOUND, ReportOptions
+from ..fonts.spec import RefitSpec
 
 if TYPE_CHECKING:
     from ...readers import Font
@@ -38,7 +38,7 @@ LEFT = 5
 def mend(
     sources: Annotated[list[Path], typer.Argument(metavar="SOURCE", help=SOURCES_HELP, show_default=False)],
     subset: opt.Subset,
-    spec: Annotated[RunSpec, only("in_place", "layer")],
+    spec: Annotated[RefitSpec, only("in_place", "layer")],
     report: Annotated[ReportOptions, only("rows", "html")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,

@@ -113,7 +113,7 @@ def make_atlas(
     sample = names[:: -(-total // SCALE_SAMPLE) or 1]
     job, notable = AtlasJob(place_of(source), options, axis is not None), Atlas(0, [], [])
     kept: dict[str, Any] = {}
-    kinds = kinds_for(options, masters=job.masters)
+    kinds = ["masters"] if job.masters else kinds_for(options)
     with workers(jobs, kinds=kinds, expected=total, executor=executor) as pool:
         if axis is None:
             kept = {part.tasks[0]: part.result for part in run(job, sample, pool, observer=observer, total=total)}
