@@ -5,7 +5,7 @@ The command line, files of settings, checks of values and printed commands are m
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from functools import cache
 from itertools import chain
@@ -129,10 +129,13 @@ def check(value: Any) -> None:
             require(about.rule.holds(given), f"{name} is {about.rule.phrase}", given)
 
 
-def arguments(value: Any, default: Any) -> dict[str, list[str]]:
+def arguments(value: Any, default: Any, unshown: Collection[str] = ()) -> dict[str, list[str]]:
     """The words of a command line that make ``value`` out of ``default``, by the names of its fields.
 
     Of what is set in Python alone there is only what one of the dataclass's ``presets`` sets.
+
+    Args:
+        unshown: fields that are no options of this command line.
     """
     found = {}
     if preset := _preset(value, default):
@@ -142,8 +145,8 @@ def arguments(value: Any, default: Any) -> dict[str, list[str]]:
     for name in (one.name for one in fields(value)):
         own, usual = getattr(value, name), getattr(default, name)
         if is_dataclass(own) and usual is not None:
-            found[name] = list(chain(*arguments(own, usual).values()))
-        elif name in known and own != usual:
+            found[name] = list(chain(*arguments(own, usual, unshown).values()))
+        elif name in known and name not in unshown and own != usual:
             flag, _, off = known[name].flags[0].partition("/")
             switch = {True: [flag], False: [off]} if isinstance(own, bool) else {}
             found[name] = switch.get(own) or [flag, text_of(own, known[name].about)]

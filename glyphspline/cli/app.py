@@ -40,6 +40,10 @@ OWN = {
 """The commands of the pipeline, as the help lists them."""
 
 
+USAGE_ERROR: Any = typer.BadParameter.__mro__[1]
+"""What a call that cannot be understood ends with; typer has a copy of click, or click itself."""
+
+
 class Commands(TyperGroup):
     """The pipeline's commands, and those of plug-ins."""
 
@@ -61,8 +65,8 @@ class Commands(TyperGroup):
         """The command that the arguments name; a plug-in may be away that had it."""
         try:
             return super().resolve_command(ctx, args)
-        except Exception as error:
-            error.message += hooks.away_words()  # type: ignore[attr-defined]
+        except USAGE_ERROR as error:
+            error.message += hooks.away_words()
             raise
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

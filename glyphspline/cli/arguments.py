@@ -64,6 +64,11 @@ def numbers_of(text: str | None, rule: str) -> dict[str, float]:
     return found
 
 
+def jobs_or_address(text: Any) -> str:
+    """Parse a number of processes, or the address of a cluster."""
+    return str(text) if "://" in str(text) else str(natural(text))
+
+
 def print_version(wanted: bool) -> None:
     """Print the version and exit, if that is wanted."""
     if wanted:
@@ -151,11 +156,10 @@ class Instance:
 class RunOptions:
     """How a command runs, and what it prints."""
 
-    jobs: int | None = option(
-        None, "Start this number of worker processes. Without it, one a core.",
-        RUN, "N", flags="--jobs -j", more=NATURAL,
+    jobs: str | None = option(
+        None, "Start this number of worker processes; without it, one a core. Or work on a dask.distributed cluster.",
+        RUN, "N|TCP://…", flags="--jobs -j", more={"parser": jobs_or_address},
     )  # fmt: skip
-    scheduler: str | None = option(None, "Work on this dask.distributed cluster instead.", RUN, "TCP://…")
     resume: bool = option(True, "Go on with what is in --out, or do it all anew.", RUN, flags="--resume/--restart")
     config: Path | None = option(
         None,
@@ -164,7 +168,23 @@ class RunOptions:
         RUN, "FILE", more={"callback": configured, "is_eager": True},
     )  # fmt: skip
     quiet: bool = option(False, "Print nothing but errors.", RUN, flags="--quiet -q")
-    as_json: bool = option(False, "Print the result as JSON on standard output.", RUN, flags="--json")
-    json_log: bool = option(
-        False, "Print progress and summary as JSON lines on standard error.", RUN, flags="--json-log"
-    )
+    as_json: bool = option(
+        False, "Print the result as JSON on standard output, and progress as JSON lines on standard error.",
+        RUN, flags="--json",
+    )  # fmt: skip
+
+    @property
+    def scheduler(self) -> str | None:
+        """The address of a cluster."""
+        return None if self.jobs is None or self.jobs.isdecimal() else self.jobs
+
+    @property
+    def processes(self) -> int | None:
+        """Worker processes on this machine; None: one a core.
+
+        Raises:
+            OptionError: a cluster is asked for.
+        """
+        if self.scheduler:
+            raise OptionError(f"--jobs {self.jobs}: this command works on this machine")
+        return None if self.jobs is None else int(self.jobs)

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from ..errors import GlyphsplineError, OutputError
 from ..runs.spec import RunSpec
 from ..types import listed
 from . import arguments as opt
-from .groups import grouped
+from .groups import grouped, without
 from .messages import print_json, progress, say, stop
 from .tables import FontRun, runs_facts, runs_table, with_character
 
@@ -44,7 +43,7 @@ class Conversion:
 def convert(
     fonts: opt.FontFiles,
     out: opt.Out,
-    spec: RunSpec,
+    spec: Annotated[RunSpec, without(*RunSpec.unshown)],
     subset: opt.Subset,
     instance: opt.Instance,
     run: opt.RunOptions,
@@ -56,7 +55,7 @@ def convert(
     Of several fonts, or a folder, glob or list of them, every glyph is converted unless some are asked for.
     """
     call = Conversion(out, spec, subset, instance, run)
-    with workplace(run.jobs, run.scheduler, call.spec) as executor:  # first: workers start while fonts are opened
+    with workplace(run, call.spec) as executor:  # first: workers start while fonts are opened
         from ..runs.font_search import find_fonts
 
         found = find_fonts(fonts)
@@ -64,7 +63,7 @@ def convert(
             stop("no fonts found")
         alone = found == [Path(fonts[0])] and len(fonts) == 1
         runs = convert_fonts(found, call, executor, alone)
-    if not (run.quiet or run.json_log or alone):
+    if not (run.quiet or run.as_json or alone):
         say(f"written to {out}")
         say(runs_table(runs))
     if run.as_json:
@@ -72,11 +71,13 @@ def convert(
     return any(one.undone for one in runs)
 
 
-def workplace(jobs: int | None, scheduler: str | None, *specs: RunSpec) -> AbstractContextManager[Executor]:
-    """The executor of runs: worker processes (None: one a core, 0: none, in this process), or a cluster."""
+def workplace(run: opt.RunOptions, *specs: RunSpec) -> AbstractContextManager[Executor]:
+    """The executor of runs: worker processes, or a cluster."""
     from ..runs.schedule import workers
 
     kinds = dict.fromkeys(kind for one in specs for kind in one.kinds)
+    scheduler = run.scheduler
+    jobs = None if scheduler else run.processes
     return workers(jobs, specs[0].limits.seconds, kinds, 1, scheduler=scheduler)
 
 
@@ -98,7 +99,7 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
         if not call.subset.is_given:
             call = replace(call, subset=opt.Subset(all_glyphs=True))
         folders = [call.out / name for name in folders_for(fonts)]
-    quiet = call.run.quiet or call.run.json_log
+    quiet = call.run.quiet or call.run.as_json
     runs: list[FontRun] = []
     if choice := choice_of(executor):
         choice.sources = len(fonts)
@@ -165,13 +166,11 @@ def run_face(
     from ..runs.convert import convert_font
 
     run, out = call.run, call.out
-    with progress(run.quiet, json_log=run.json_log) as observer:
+    with progress(run.quiet, json_lines=run.as_json) as observer:
         summary = convert_font(
             source, names, out, call.spec, executor=executor, restart=not run.resume, observer=observer
         )
-    if run.json_log:
-        say(json.dumps({"out": str(out), **summary.facts()}))
-    elif not run.quiet:
+    if not (run.quiet or run.as_json):
         seen = f"open {out / 'index.html'}" if GALLERY in call.spec.formats else f"written to {out}"
         say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}; {seen}")
         for line in summary.lines():

@@ -37,7 +37,7 @@ def demo(
     asked = opt.as_typed(subset.text or "")
     texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
     specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
-    with workplace(run.jobs, None, *specs) as executor:
+    with workplace(run, *specs) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
             if not run.quiet:
                 say(f"{path.name}: {text}")

@@ -111,7 +111,7 @@ def grouped(function: Callable[..., bool | None], cls: type[Command] = Command) 
     def command(context: typer.Context, **given: Any) -> None:
         quiet, source = bool(given.get("quiet")), context.get_parameter_source
         own = {name: value for name, value in given.items() if getattr(source(name), "name", "") != "DEFAULT"}
-        with errors(quiet or bool(given.get("json_log"))):
+        with errors(quiet or bool(given.get("as_json"))):
             listen(quiet)
             values = {name: collected(*groups[name], own) if name in groups else given[name] for name in hints}
             undone = function(**values)

@@ -118,22 +118,22 @@ EVERY = 15.0
 
 
 @contextmanager
-def progress(quiet: bool, *, json_log: bool = False) -> Iterator[Any]:
+def progress(quiet: bool, *, json_lines: bool = False) -> Iterator[Any]:
     """Show a bar of glyphs on standard error if that is a terminal, or else a line every few seconds.
 
     It is moved by what is yielded, called with the numbers done, of all, and failed; None if ``quiet``. With
-    ``json_log`` these are JSON lines instead, one a second at most.
+    ``json_lines`` these are JSON lines instead, one a second at most.
     """
-    last = 0.0 if json_log else time.monotonic()
+    last = 0.0 if json_lines else time.monotonic()
 
     def log(done: int, total: int, failed: int = 0) -> None:
         nonlocal last
-        if time.monotonic() - last >= (1 if json_log else EVERY) or (json_log and done == total):
+        if time.monotonic() - last >= (1 if json_lines else EVERY) or (json_lines and done == total):
             last = time.monotonic()
-            say(json.dumps({"done": done, "total": total, "failed": failed}) if json_log else f"{done} of {total}")
+            say(json.dumps({"done": done, "total": total, "failed": failed}) if json_lines else f"{done} of {total}")
 
-    if json_log or quiet or not sys.stderr.isatty():
-        yield log if json_log or not quiet else None
+    if json_lines or quiet or not sys.stderr.isatty():
+        yield log if json_lines or not quiet else None
         return
     from rich import progress as rich
     from rich.console import Console

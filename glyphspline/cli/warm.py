@@ -14,6 +14,6 @@ def warm(run: Annotated[opt.RunOptions, only("jobs", "quiet")]) -> None:
     """Compile everything now, so that no other command has to: for checkouts and containers."""
     from ..runs.warm import warm as compile_all
 
-    compile_all(run.jobs)
+    compile_all(run.processes)
     if not run.quiet:
         say("everything is compiled")

@@ -110,7 +110,7 @@ class RunSpec:
         options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
-        verb: the command of such a run.
+        verb: the command of such a run. unshown: options that it has in Python alone.
 
     Raises:
         OptionError: one of these is none of what it can be.
@@ -130,11 +130,14 @@ class RunSpec:
     limits: Limits = LIMITS
     maps: Maps = field(default_factory=Maps)
     verb: ClassVar[str] = "convert"
+    unshown: ClassVar[tuple[str, ...]] = (
+        "continuity", "effort", "flatness", "measure", "size", "stroke_width", "thousandths",
+    )  # fmt: skip
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
-        if not (self.formats or self.whole):
+        if not self.formats and self.verb == "convert":
             raise OptionError(f"no format given: there are {', '.join(available())}")
         for name in self.formats:
             if not isinstance(name, str) or not (name == GALLERY or is_format(name) or whole_named(name)):
@@ -274,7 +277,7 @@ def command(
         if name != "all":
             yield value if isinstance(value, str) else ",".join(map(str, value))
     yield from instance_arguments(source.face_index, source.location)
-    words = arguments(spec, type(spec)())
+    words = arguments(spec, type(spec)(), spec.unshown)
     formats = words.pop("formats", [])
     yield from (*chain(*words.values()), *formats)
 

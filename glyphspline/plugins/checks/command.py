@@ -83,7 +83,7 @@ def check(
 
     for face in check_fonts(
         files, asked, chosen=names_in, face_index=instance.face_index,
-        location=instance.place, jobs=run.jobs, watch=partial(progress, run.quiet), alone=alone,
+        location=instance.place, jobs=run.processes, watch=partial(progress, run.quiet), alone=alone,
     ):  # fmt: skip
         faces.append(face)
         if face.remark is not None:

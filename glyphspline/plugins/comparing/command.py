@@ -54,7 +54,7 @@ def diff(
         say_face(source, instance, run.quiet)
     pairs, lacking = chosen_pairs(*sources, subset)
     with progress(run.quiet) as observer:
-        found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.jobs, observer=observer)
+        found = compare_fonts(*sources, pairs, tolerance=tolerance, jobs=run.processes, observer=observer)
     if html is not None:
         write_page(html, *sources, found)
     worst = found.worst_first()

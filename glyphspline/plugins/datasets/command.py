@@ -27,7 +27,7 @@ def dataset(
         str, opt.out("Write to this folder, or s3://bucket/folder.", "DIR|URL", parser=place_or_url, show_default=False)
     ],
     spec: DatasetSpec,
-    run: Annotated[opt.RunOptions, only("jobs", "scheduler", "resume", "config", "quiet", "as_json")],
+    run: Annotated[opt.RunOptions, only("jobs", "resume", "config", "quiet", "as_json")],
     fit: Annotated[bool, About("Fit splines and measure them.", ROWS, flags=("--fit/--no-fit",))] = True,
     text_file: Annotated[Path | None, About("Take only glyphs of a UTF-8 file's characters.", TAKEN)] = None,
 ) -> bool:
@@ -44,9 +44,8 @@ def dataset(
         text = text_file.read_text(encoding="utf-8-sig")
         spec = replace(spec, characters="".join(sorted(set(text) - set("\r\n"))))
     with progress(run.quiet) as observer:
-        summary = make(
-            fonts, out, spec, jobs=run.jobs, scheduler=run.scheduler, restart=not run.resume, observer=observer
-        )
+        jobs = None if run.scheduler else run.processes
+        summary = make(fonts, out, spec, jobs=jobs, scheduler=run.scheduler, restart=not run.resume, observer=observer)
     if not run.quiet:
         for line in summary.lines():
             say(line)

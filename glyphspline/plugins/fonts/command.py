@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -55,15 +54,13 @@ def refit(
     if not spec.formats and not spec.is_back:
         spec = replace(spec, formats=(own_format(found[0]),))
     spec = replace(spec, masters=masters)
-    with kept(out) as folder, workplace(run.jobs, run.scheduler, spec) as executor:
+    with kept(out) as folder, workplace(run, spec) as executor:
         call = Conversion(folder, spec, subset, instance, run)
         if masters:
             check_masters(call)
             names, summary = service("refit_masters")([Path(each) for each in sources], call, axis, executor)
             facts = {"font": str(found[0]), "out": str(folder), **summary.facts()}
-            if run.json_log:
-                say(json.dumps(facts))
-            elif not run.quiet:
+            if not (run.quiet or run.as_json):
                 for line in summary.lines():
                     say(line)
             if run.as_json:
@@ -71,7 +68,7 @@ def refit(
             return bool(names.missing or summary.failed or summary.outside)
         alone = found == [Path(sources[0])] and len(sources) == 1
         runs = convert_fonts(found, call, executor, alone)
-    if not (run.quiet or run.json_log or alone):
+    if not (run.quiet or run.as_json or alone):
         say(runs_table(runs))
     if run.as_json:
         print_json(runs_facts(runs))

@@ -58,6 +58,7 @@ class RefitSpec(RunSpec):
     )  # fmt: skip
 
     verb = "refit"
+    unshown = ("measure",)
 
     def __post_init__(self) -> None:
         if self.in_place and self.layer is not None:

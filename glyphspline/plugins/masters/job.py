@@ -401,7 +401,7 @@ def refit_masters(
     run, spec = call.run, cast(RefitSpec, call.spec)
     sources = [opened(path, call.instance, run.quiet) for path in paths]
     names = chosen(sources[0], call.subset, run.quiet)
-    with progress(run.quiet, json_log=run.json_log) as observer:
+    with progress(run.quiet, json_lines=run.as_json) as observer:
         return names, convert_font_masters(
             sources, names, call.out, spec, executor, axis=axis, restart=not run.resume, observer=observer
         )

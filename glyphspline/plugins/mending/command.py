@@ -74,7 +74,7 @@ def mend(
     chosen_kinds = MENDED if kinds == "all" else opt.items_of(kinds)
     found: list[MendedSource] = []
     undone = False
-    with workers(run.jobs, kinds=["mending"], expected=1, count=len(sources)) as pool:
+    with workers(run.processes, kinds=["mending"], expected=1, count=len(sources)) as pool:
         for path in sources:
             source = open_source(path)
             if not isinstance(source, Ufo | Designspace | Font):

@@ -73,7 +73,7 @@ def atlas(
     profiled = None if profiles is None else source.select(text=opt.as_typed(profiles))
     with progress(run.quiet) as observer:
         made = make_atlas(
-            source, names, out, options, axis, profiles=profiled, maps=maps, jobs=run.jobs, observer=observer
+            source, names, out, options, axis, profiles=profiled, maps=maps, jobs=run.processes, observer=observer
         )
     if not run.quiet:
         failed = made.failed
