@@ -8,6 +8,7 @@ that the pipeline does not have; and what they add, when it is used.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
@@ -77,11 +78,7 @@ SERVICES: dict[str, str] = {
 
 @cache
 def plugins() -> Mapping[str, Plugin]:
-    """The plug-ins that are there, by name.
-
-    Raises:
-        GlyphsplineError: one cannot be loaded, or is no plug-in.
-    """
+    """The plug-ins that are there, by name. One that is broken is named in a warning, and left out."""
     return {name: plugin for name, entry in entries().items() if (plugin := _loaded(entry)) is not None}
 
 
@@ -94,7 +91,7 @@ def entries() -> Mapping[str, EntryPoint]:
 
 
 def away() -> list[str]:
-    """The names of plug-ins whose code is not there."""
+    """The names of plug-ins whose code is not there, or broken."""
     return sorted(entries().keys() - plugins().keys())
 
 
@@ -147,22 +144,27 @@ def _at(plugin: str, place: Place) -> Any:
         if not is_away(error):
             raise
         raise GlyphsplineError(f"the plug-in {plugin} needs another one, which is not there: {error.name}") from error
+    except AttributeError as error:
+        raise GlyphsplineError(f"the plug-in {plugin} cannot be loaded: {error}") from error
 
 
 def _loaded(entry: EntryPoint) -> Plugin | None:
-    """A plug-in; None if its code is not there."""
-    who = f"the plug-in {entry.name!r}{f' of {entry.dist.name}' if entry.dist else ''}"
+    """A plug-in; None if its code is not there, or is broken."""
     try:
         found = entry.load()
     except ModuleNotFoundError as error:
         if error.name and f"{entry.module}.".startswith(f"{error.name}."):
             return None
-        raise GlyphsplineError(f"{who} cannot be loaded: {error}") from error
+        found, why = None, str(error)
     except Exception as error:  # a plug-in may raise anything
-        raise GlyphsplineError(f"{who} cannot be loaded: {type(error).__name__}: {error}") from error
-    if not isinstance(found, Plugin):
-        raise GlyphsplineError(f"{who} is none: {entry.value} is {found!r}")
-    return found
+        found, why = None, f"{type(error).__name__}: {error}"
+    else:
+        why = f"{entry.value} is {found!r}, no Plugin"
+    if isinstance(found, Plugin):
+        return found
+    who = f"the plug-in {entry.name!r}{f' of {entry.dist.name}' if entry.dist else ''}"
+    logging.getLogger(__package__).warning("%s cannot be loaded: %s", who, why)
+    return None
 
 
 def is_away(error: ModuleNotFoundError) -> bool:

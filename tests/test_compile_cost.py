@@ -79,7 +79,7 @@ def test_compiled_functions_take_few_arrays() -> None:
 EVENTS = """
 import time
 from numba.core import event
-from glyphspline.runs.small_runs import WORK
+from glyphspline.runs.small_runs import work
 from glyphspline.runs.warm import compile_kind
 
 class Times(event.Listener):
@@ -97,7 +97,7 @@ class Times(event.Listener):
 
 times = Times()
 event.register("numba:compile", times)
-for kind in WORK:
+for kind in work():
     compile_kind(kind)
 for name, seconds in sorted(times.own.items(), key=lambda one: -one[1]):
     print(f"{seconds:.2f} {name}")

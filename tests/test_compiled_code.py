@@ -289,9 +289,9 @@ def test_warm_reaches_every_function() -> None:
     code = (
         "import importlib, pkgutil, glyphspline\n"
         "from glyphspline.code_files import below, kept\n"
-        "from glyphspline.runs.small_runs import WORK\n"
+        "from glyphspline.runs.small_runs import work\n"
         "from glyphspline.runs.warm import compile_kind\n"
-        "for kind in WORK: compile_kind(kind)\n"
+        "for kind in work(): compile_kind(kind)\n"
         "for module in pkgutil.walk_packages(glyphspline.__path__, 'glyphspline.'):\n"
         "    if '__main__' not in module.name: importlib.import_module(module.name)\n"
         "from glyphspline.compiled import everything\n"

@@ -6,23 +6,19 @@ Rooms are the folders and the single files of the package's top level, and are r
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
-from collections.abc import Iterator
-from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
-from tests.places import ROOT
+from scripts.house import MODULES, NEEDS, PACKAGE, circle, forbidden, imported, modules_imported, plugin, room, tree
 
-PACKAGE = ROOT / "glyphspline"
-
-BASE = {"arrays", "code_files", "compiled", "errors", "extras", "fields", "files", "intrinsics", "types", "_version"}
+BASE = {"arrays", "code_files", "compiled", "errors", "extras", "fields", "files", "hooks", "intrinsics", "types"}
 CURVES = BASE | {"curves"}
-FITTING = CURVES | {"interpolation", "outlines", "checks", "fitting"}
-CHECKS = CURVES | {"outlines", "checks"}
-WRITERS = FITTING | {"readers", "typesetting", "comparing", "writers"}
+FITTING = CURVES | {"interpolation", "outlines", "fitting"}
+WRITERS = FITTING | {"_version", "readers", "writers"}
 PLAN = {
     "_version": set(),
     "code_files": set(),
@@ -35,81 +31,50 @@ PLAN = {
     "extras": {"errors"},
     "files": {"errors"},
     "fields": {"errors"},
+    "hooks": {"errors"},
     "types": set(),
     "curves": BASE,
     "interpolation": CURVES,
     "outlines": CURVES,
-    "matching": CURVES | {"outlines"},
-    "checks": CHECKS,
-    "comparing": CHECKS | {"comparing"},
-    "mending": CHECKS | {"mending"},
     "fitting": FITTING,
-    "readers": CURVES | {"outlines", "matching"},
-    "typesetting": FITTING | {"readers"},
+    "readers": CURVES | {"outlines"},
     "writers": WRITERS,
-    "report": WRITERS | {"mending"},
-    "runs": WRITERS | {"matching", "mending", "report"},
-    "datasets": WRITERS | {"report", "runs"},
-    "viewer": WRITERS | {"report"},
-    "notebook": WRITERS,
-    "cli": WRITERS | {"mending", "report", "runs", "datasets", "viewer"},
-    "fontspector": WRITERS | {"runs", "cli"},
+    "report": WRITERS,
+    "runs": WRITERS | {"report"},
+    "cli": WRITERS | {"report", "runs"},
+    "plugins": set(),
     "__main__": {"cli"},
 }
-"""What each room may import, besides itself. ``__init__`` stands outside: it gathers the public names."""
+"""What each room of the pipeline may import, besides itself. ``__init__`` stands outside: it gathers the public names.
+A plug-in imports the pipeline, and the plug-ins that it names."""
 
 FONT_LIBRARIES = {"fontTools", "uharfbuzz", "svgpathtools", "pathops"}
 DRAWING_LIBRARIES = {"matplotlib", "PIL"}
-CORE = {"curves", "interpolation", "outlines", "matching", "fitting"}
-
-
-def name_of(path: Path) -> str:
-    """The module of a file, without the package's name."""
-    return ".".join(path.relative_to(PACKAGE).with_suffix("").parts).removesuffix(".__init__")
-
-
-MODULES = {name_of(path): path for path in sorted(PACKAGE.rglob("*.py")) if path != PACKAGE / "__init__.py"}
-
-
-def room(module: str) -> str:
-    return module.split(".")[0]
-
-
-def imported(module: str) -> Iterator[str]:
-    """Absolute names of all that a file imports, inside functions too; ``a.b.name`` where a name is imported."""
-    path = MODULES[module]
-    package = ["glyphspline", *module.split(".")]
-    if path.name != "__init__.py":
-        package = package[:-1]
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            base = package[: len(package) - node.level + 1] if node.level else []
-            yield from (".".join([*base, *filter(None, [node.module]), alias.name]) for alias in node.names)
-
-
-def modules_imported(module: str) -> set[str]:
-    """The modules of the package that a file imports."""
-    found = set()
-    for name in imported(module):
-        parts = name.removeprefix("glyphspline.").split(".") if name.startswith("glyphspline.") else []
-        for stop in (len(parts), len(parts) - 1):
-            if ".".join(parts[:stop]) in MODULES:
-                found.add(".".join(parts[:stop]))
-                break
-    return found - {module}
+CORE = {"curves", "interpolation", "outlines", "fitting"}
 
 
 def test_every_room_is_on_the_plan() -> None:
-    assert {room(module) for module in MODULES} == PLAN.keys()
+    assert {room(module) for module in MODULES} == PLAN.keys() | {f"plugins.{name}" for name in NEEDS}
 
 
-@pytest.mark.parametrize("module", MODULES)
+@pytest.mark.parametrize("module", [module for module in MODULES if plugin(module) is None])
 def test_a_file_imports_only_what_its_room_may(module: str) -> None:
     allowed = PLAN[room(module)] | {room(module)}
     beyond = [other for other in modules_imported(module) if room(other) not in allowed]
     assert not beyond
+
+
+def test_the_pipeline_imports_no_plugin_and_a_plugin_those_it_names() -> None:
+    assert forbidden() == []
+
+
+@pytest.mark.parametrize(("name", "others"), NEEDS.items())
+def test_a_plugin_says_which_others_it_needs(name: str, others: tuple[str, ...]) -> None:
+    words = (ast.get_docstring(tree(f"plugins.{name}")) or "").partition(". In: ")[0]
+    (said,) = re.findall(r"^Needs (.*)$", words, re.MULTILINE)
+    assert said == (
+        "no other plug-in" if not others else " and ".join([", ".join(others[:-1]), others[-1]]).lstrip(" and")
+    )
 
 
 def test_the_oracle_is_independent() -> None:
@@ -122,16 +87,11 @@ def test_the_oracle_is_independent() -> None:
 
 
 def test_no_files_import_each_other_in_a_circle() -> None:
-    graph = {module: modules_imported(module) for module in MODULES}
-    try:
-        list(TopologicalSorter(graph).static_order())
-    except CycleError as error:
-        pytest.fail(" -> ".join(error.args[1]))
+    assert circle() == []
 
 
 def test_a_circle_would_be_found() -> None:
-    with pytest.raises(CycleError):
-        list(TopologicalSorter({"a": {"b"}, "b": {"a"}}).static_order())
+    assert circle({"a": frozenset("b"), "b": frozenset("a")}) != []
 
 
 @pytest.mark.parametrize("module", [module for module in MODULES if room(module) in CORE])
@@ -144,7 +104,7 @@ def test_the_core_knows_no_fonts_and_draws_nothing(module: str) -> None:
 def test_a_run_that_only_hands_out_work_imports_no_compiler() -> None:
     font = PACKAGE.parent / "fonts_test" / "kouzan-gyosho.ttf"
     code = (
-        "import sys, glyphspline.cli.app, glyphspline.runs.jobs.check, glyphspline.runs.jobs.convert\n"
+        "import sys, glyphspline.cli.app, glyphspline.plugins.checks.job, glyphspline.runs.convert\n"
         f"glyphspline.open_source({str(font)!r}).select(text='龍')\n"
         "print(*sorted({name.split('.')[0] for name in sys.modules}))"
     )

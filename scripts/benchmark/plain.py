@@ -21,7 +21,8 @@ import numpy as np
 
 from glyphspline import Options, Outline, convert_many, open_font
 from glyphspline.code_files import OFF, PLACE
-from glyphspline.runs.small_runs import AXES, REGIONS, WORK
+from glyphspline.plugins.masters.work import AXES, REGIONS
+from glyphspline.runs.small_runs import work
 
 from .measure import Row
 
@@ -197,7 +198,7 @@ def compile_all() -> dict[str, float]:
             found[name] = found.get(name, 0.0) + seconds - below
 
     event.register("numba:compile", Listener())
-    for kind in WORK:
+    for kind in work():
         compile_kind(kind)
     return found
 
@@ -229,10 +230,10 @@ def rows() -> list[Row]:
         place = {PLACE: folder, "GLYPHSPLINE_QUIET": "1"}
         seconds = in_a_process("compile_all", **place)
         compiling = {
-            kind: sum(seconds.get(name, 0.0) for name in in_a_process("functions_of", kind, **place)) for kind in WORK
+            kind: sum(seconds.get(name, 0.0) for name in in_a_process("functions_of", kind, **place)) for kind in work()
         }
         costs = {}
-        for kind in WORK:
+        for kind in work():
             plain, compiled = ((0.0, 1.0), (0.0, 1.0))
             if kind in KINDS:
                 plain, compiled = (in_a_process("timed", kind, **place, **off) for off in ({OFF: "1"}, {}))

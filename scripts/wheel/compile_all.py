@@ -17,7 +17,7 @@ from numba.core.registry import cpu_target
 
 from glyphspline.code_files import PACKAGE, names_in, own_folder
 from glyphspline.compiling import used
-from glyphspline.runs.small_runs import WORK
+from glyphspline.runs.small_runs import work
 from glyphspline.runs.warm import MARK, compile_kind, warm
 
 
@@ -29,7 +29,7 @@ def main() -> None:
     assert kept
     if "SOURCE_DATE_EPOCH" not in os.environ:  # names in the code count what a process has compiled before
         warm()
-    for kind in WORK:
+    for kind in work():
         compile_kind(kind)
     target = cpu_target.target_context.codegen().magic_tuple()
     if features is None:

@@ -13,11 +13,11 @@ import pytest
 from starlette.testclient import TestClient
 from typer.testing import CliRunner
 
+from glyphspline import hooks
 from glyphspline.cli.app import app
 from glyphspline.code_files import OFF, PLACE, kept
 from glyphspline.plugins.viewer.app import make_app
 from glyphspline.report import FOLDER as GALLERY
-from glyphspline.runs.spec import WHOLE
 from glyphspline.writers.formats import OURS
 from tests.variable_fonts import polygon, quadratic, variable_font
 
@@ -26,7 +26,7 @@ ON = [True, False] * 4
 BOX = [(50, 0), (150, 0), (150, 700), (50, 700)]
 
 CONVERSIONS = [
-    *([f"--format={name}"] for name in (*OURS, GALLERY, *WHOLE)),
+    *([f"--format={name}"] for name in (*OURS, GALLERY, *hooks.names("formats"), "parquet")),
     ["--corners=smooth"],
     ["--step=150"],
     ["--count=8"],

@@ -16,7 +16,7 @@ from glyphspline.runs import choice as choices
 from glyphspline.runs.choice import Choice, Cost, costs, least
 from glyphspline.runs.engine import Item, Job, run
 from glyphspline.runs.schedule import kinds_for
-from glyphspline.runs.small_runs import WORK
+from glyphspline.runs.small_runs import work
 from glyphspline.runs.spec import RunSpec
 
 COSTS = {"a": Cost(100.0, 1.1, 0.1), "b": Cost(20.0, 0.6, 0.1), "c": Cost(10.0, 0.0, 0.0)}
@@ -106,6 +106,6 @@ def test_code_that_is_there_is_used_and_nothing_compiled_where_it_is_off(monkeyp
 
 def test_the_costs_of_every_kind_of_work_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
-    assert costs().keys() == WORK.keys()
+    assert costs().keys() == work().keys()
     for options in (Options(), Options(corners="smooth"), Options(step=9.0), Options(continuity="g2", effort="best")):
         assert 10 < least(kinds_for(options, RunSpec().formats), 2) < 1e6, "segments: a letter, and ten CJK faces"

@@ -82,7 +82,7 @@ def test_the_run_writes_what_the_format_does(font: gs.Font, tmp_path: Path) -> N
     glyph = gs.convert(font.outline("O"), gs.Options(step=60))
     settings = Settings(look, flatness=2.0).scaled(font.metrics)
     (entry,) = entries_of(tmp_path)
-    assert tuple(entry["files"]) == tuple(name for name in OURS if name in shared)
+    assert tuple(entry["files"]) == tuple(name for name in format_names() if name in shared)
     for name, path in entry["files"].items():
         text = format_named(name).write(glyph, settings)
         assert (tmp_path / path).read_bytes() == (text.encode() if isinstance(text, str) else text), name
@@ -131,6 +131,7 @@ def test_a_missing_extra_is_said_before_the_run_starts(font: gs.Font, tmp_path: 
 # Plug-ins.
 
 PLUG_IN = """
+from glyphspline.hooks import Plugin
 from glyphspline.writers.formats import Format
 
 def write(result, settings):
@@ -139,16 +140,15 @@ def write(result, settings):
 count = Format("count", ".count.txt", write)
 svg = Format("svg", ".txt", write)
 bare = Format("bare", ".txt", lambda result, settings: str(len(result.arrays.arcs)), fitted=False)
+names = ["count", "svg", "bare"]
+places = {name: f"counting:{name}" for name in names}
+PLUGIN = Plugin(formats={**places, "broken": "counting:missing", "other": "counting:count"})
 """
 
 METADATA = "Metadata-Version: 2.1\nName: counting\nVersion: 1.0\n"
 
-ENTRIES = """[glyphspline.formats]
-count = counting:count
-svg = counting:svg
-bare = counting:bare
-broken = counting:missing
-other = counting:count
+ENTRIES = """[glyphspline.plugins]
+counting = counting:PLUGIN
 """
 
 

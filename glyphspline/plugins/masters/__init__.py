@@ -1,6 +1,6 @@
 """Variable fonts and designspaces: all masters of a glyph as one curve.
 
-Needs fonts and checks. In: masters; out: results in all masters, variable fonts. Read first: :mod:`.convert_masters`.
+Needs checks and fonts. In: masters; out: results in all masters, variable fonts. Read first: :mod:`.convert_masters`.
 """
 
 from __future__ import annotations

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from fontTools import subset
 from fontTools.ttLib import TTFont
-from tests.comparing.test_compare import moved, of, sampled
 from typer.testing import CliRunner
 
 import glyphspline as gs
@@ -19,6 +18,7 @@ from glyphspline.plugins.comparing.job import FontDifference, Pair, Pairs, compa
 from glyphspline.runs.folder import entries_of
 from glyphspline.types import Head
 from tests.places import DEJAVU, FONTS
+from tests.plugins.comparing.test_compare import moved, of, sampled
 
 GARAMOND = Path("/usr/share/fonts/opentype/ebgaramond/EBGaramond12-Regular.otf")
 CLOSE = ["Lambda", "uni041B.alt", "uni026C", "Sigma.sc", "T_h", "uni1EB4", "W.sups", "mu", "ampersand.ordn", "A", "g"]

@@ -20,10 +20,9 @@ from glyphspline.cli.app import app as shell
 from glyphspline.fitting.closed_curves import History, recorded
 from glyphspline.fitting.options import PRESETS, Continuity, Effort
 from glyphspline.plugins.viewer import conversion
-from glyphspline.plugins.viewer.app import first_glyph
+from glyphspline.plugins.viewer.app import first_glyph, make_app
 from glyphspline.plugins.viewer.conversion import shown_steps
 from glyphspline.types import FloatArray
-from glyphspline.viewer import make_app
 from glyphspline.writers.svg.path_data import path_data
 from tests.places import FONTS
 
