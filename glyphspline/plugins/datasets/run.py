@@ -16,7 +16,7 @@ from typing import Any
 
 from ...errors import GlyphsplineError, OptionError, OutputError
 from ...extras import need
-from ...files import reading
+from ...files import is_url, reading
 from ...runs.convert import ConvertJob
 from ...runs.engine import Item, Job, Observer, reason, run
 from ...runs.folder import locked
@@ -146,7 +146,7 @@ def dataset(
         raise OptionError("no fonts found")
     kinds = ["points", *(["unfitted"] if spec.options is None else kinds_for(spec.options))]
     with (
-        nullcontext() if remote.is_url(folder) else locked(Path(folder)),  # a store has no locks
+        nullcontext() if is_url(folder) else locked(Path(folder)),  # a store has no locks
         workers(jobs, LIMITS.seconds, kinds, len(found), scheduler=scheduler, executor=executor) as pool,
     ):
         scanned = run(ScanJob(spec), [path.absolute() for path in found], pool)
@@ -202,7 +202,7 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
     watching = observer and (lambda done, total, new: observer(done, total, failed + new))
 
     def opened(shard: Shard) -> Unfinished | None:
-        return None if remote.is_url(out) else Unfinished(Path(out, UNFINISHED), mark_of(shard, plan))
+        return None if is_url(out) else Unfinished(Path(out, UNFINISHED), mark_of(shard, plan))
 
     first = opened(left[0]) if left else None
     known = first.chunks if first else 0
