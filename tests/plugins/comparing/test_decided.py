@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli.app import app
-from glyphspline.cli.tables import difference_lines, differences_table
 from glyphspline.plugins.comparing.job import FontDifference, Pair, Pairs, compare_fonts
+from glyphspline.plugins.comparing.tables import difference_lines, differences_table
 from glyphspline.runs.folder import entries_of
 from glyphspline.types import Head
 from tests.places import DEJAVU, FONTS
