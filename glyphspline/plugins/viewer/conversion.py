@@ -1,6 +1,6 @@
 """What the viewer computes, and as JSON for the page: a glyph, with moved vertices, by other variants, step by step.
 
-The page gets path data and lists of points, y down, with two decimals.
+The page gets path data and lists of points, y down, with two decimals; paths of results are as they are written.
 """
 
 from __future__ import annotations
@@ -212,7 +212,7 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
     arcs = [arc for contour in result.contours for arc in contour.interpolations]
     return {
         "variant": result.options.variant,
-        "result": path_data((contour.curve for contour in result.contours), DIGITS),
+        "result": path_data((contour.curve for contour in result.contours), result.options.precision),
         "polygons": [points(contour.polygon) for contour in result.contours],
         "movable": [is_smooth(contour) for contour in result.contours],
         "notes": list(result.notes),
