@@ -271,7 +271,7 @@ def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redraw
     for _, _, line in recorded_lines(out, record):
         entry = json.loads(line)
         if entry["status"] == "ok" or (with_empty and entry["status"] == "empty"):
-            files[entry["glyph"]] = entry["files"][RESULTS]
+            files |= {entry["glyph"]: path for path in [entry["files"].get(RESULTS)] if path}  # none for drawings alone
     return MadeOnDemand(files, lambda name: redrawn_glyph(stored(out / files[name], MastersResult, STORED)))
 
 
