@@ -15,7 +15,7 @@ EXTRAS = {
     "cad": ("DXF", "ezdxf"),
     "parquet": ("Parquet", "pyarrow"),
     "sources": ("reading Glyphs files", "glyphsLib"),
-    "cluster": ("--scheduler", "distributed"),
+    "cluster": ("--jobs tcp://…", "distributed"),
     "remote": ("a URL", "fsspec"),
     "fontspector": ("the plug-in of fontspector", "fontspectorapi"),
     "view": ("the viewer", "starlette", "uvicorn"),

@@ -132,13 +132,13 @@ def check(value: Any) -> None:
 def arguments(value: Any, default: Any, unshown: Collection[str] = ()) -> dict[str, list[str]]:
     """The words of a command line that make ``value`` out of ``default``, by the names of its fields.
 
-    Of what is set in Python alone there is only what one of the dataclass's ``presets`` sets.
+    Of what is no option of it there is only what one of the dataclass's ``presets`` sets.
 
     Args:
         unshown: fields that are no options of this command line.
     """
     found = {}
-    if preset := _preset(value, default):
+    if preset := _preset(value, default, unshown):
         found["preset"] = ["--preset", preset]
         default = replace(default, **value.presets[preset])
     known = {one.name: one for one in options_of(value.__class__)}
@@ -153,9 +153,9 @@ def arguments(value: Any, default: Any, unshown: Collection[str] = ()) -> dict[s
     return found
 
 
-def _preset(value: Any, default: Any) -> str | None:
-    """The preset that sets for Python alone what ``value`` has, and ``default`` has not."""
-    known = {one.name for one in options_of(value.__class__)}
+def _preset(value: Any, default: Any, unshown: Collection[str]) -> str | None:
+    """The preset that sets what ``value`` has, ``default`` has not, and no option sets."""
+    known = {one.name for one in options_of(value.__class__)}.difference(unshown)
     for preset, values in getattr(value, "presets", {}).items():
         alone = {name: given for name, given in values.items() if name not in known}
         own, other = ({name: getattr(of, name) for name in alone} for of in (value, default))

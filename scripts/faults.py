@@ -33,33 +33,25 @@ from .survey import ROOT, parser, table
 
 TESTS = """
 arrays         tests/fitting/test_options.py tests/outlines
-checks         tests/checks
 cli            tests/cli
 code_files     tests/test_compiled_code.py
-comparing      tests/comparing
 compiled       tests/test_compiled_code.py
 compiling      tests/test_compiled_code.py
 curves         tests/curves
-datasets       tests/datasets
 errors         tests/test_errors.py
 extras         tests/test_extras.py
 fields         tests/fitting/test_options.py
 files          tests/runs/test_batch.py
 fitting        tests/fitting
-fontspector    tests/cli/test_fontspector.py
+hooks          tests/test_plugins.py
 interpolation  tests/interpolation tests/test_compiled.py
-matching       tests/matching
-mending        tests/mending
-notebook       tests/cli/test_display.py
 outlines       tests/outlines
 readers        tests/readers
 report         tests/report
 runs           tests/runs
-typesetting    tests/typesetting
-viewer         tests/viewer
 writers        tests/writers
 """
-"""The tests of each room."""
+"""The tests of each room of the pipeline; those of a plug-in stand in a folder of its name."""
 
 OTHERS: dict[type[ast.AST], tuple[str, str]] = {
     ast.Lt: ("<", "<="),
@@ -169,14 +161,17 @@ def is_called_by_others_only(function: ast.FunctionDef) -> bool:
 
 
 def rooms() -> dict[str, list[str]]:
-    """The tests of each room."""
-    return {words[0]: words[1:] for words in map(str.split, TESTS.strip().splitlines())}
+    """The tests of each room; that of a plug-in is "plugins.NAME"."""
+    found = {words[0]: words[1:] for words in map(str.split, TESTS.strip().splitlines())}
+    for place in sorted((ROOT / "tests" / "plugins").glob("*/__init__.py")):
+        found[f"plugins.{place.parent.name}"] = [place.parent.relative_to(ROOT).as_posix()]
+    return found
 
 
 @cache
 def faults_of(room: str) -> list[Fault]:
     """All faults that can be planted in a room."""
-    place = ROOT / "glyphspline" / room
+    place = ROOT / "glyphspline" / room.replace(".", "/")
     files = sorted(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
     texts = (Text(file.relative_to(ROOT).as_posix(), file.read_bytes()) for file in files)
     return [fault for text in texts for fault in text.faults()]

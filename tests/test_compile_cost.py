@@ -24,7 +24,7 @@ MOST_ARRAYS = 25
 passes all of them one by one."""
 
 MANY = {
-    f"glyphspline.fitting.sharp.font_quadratics.{name}"
+    f"glyphspline.plugins.fonts.fit.quadratics.{name}"
     for name in ("find_fewest", "wrong_quads", "set_ends", "fewest", "begin", "assembled", "fit_run")
 }
 """Functions that still take more."""
@@ -35,7 +35,7 @@ MOST_SECONDS = 5.0
 LONG = {
     "glyphspline.fitting.sharp.vertex_steps.move_vertices": 9.0,
     "glyphspline.curves.crossings.glyph_meetings": 9.0,
-    "glyphspline.fitting.sharp.font_fit.fit_contours": 30.0,
+    "glyphspline.plugins.fonts.fit.fit.fit_contours": 30.0,
 }
 """Functions that still take longer, and how long at most."""
 

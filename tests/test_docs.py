@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import glyphspline as gs
+from scripts.house import NEEDS
 from tests.places import ROOT
 
 DOCS = ROOT / "docs"
@@ -17,6 +18,13 @@ PAGES = sorted({*ROOT.glob("*.md"), *DOCS.glob("*.md"), ROOT / "outputs" / "pape
 def test_every_public_name_has_its_place_in_the_pages() -> None:
     listed = re.findall(r"^\.\. auto\w+:: (\w+)$", (DOCS / "api.md").read_text(encoding="utf-8"), re.MULTILINE)
     assert sorted(listed) == sorted(set(gs.__all__) - {"__version__"})
+
+
+@pytest.mark.parametrize("name", NEEDS)
+def test_every_plugin_has_a_line_in_the_table_of_rooms(name: str) -> None:
+    page = (DOCS / "inside.md").read_text(encoding="utf-8")
+    rows = re.findall(rf"^\| `plugins/{name}/` \| (.+) \|$", page, re.MULTILINE)
+    assert len(rows) == 1
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

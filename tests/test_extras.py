@@ -22,7 +22,7 @@ COMMANDS = {
     "parquet": ["convert", FONT, "--text", "O", "--format", "svg,parquet"],
     "cad": ["convert", FONT, "--text", "O", "--format", "dxf"],
     "sources": ["convert", "made.glyphs", "--text", "O"],
-    "cluster": ["convert", FONT, "--text", "O", "--scheduler", "tcp://127.0.0.1:1"],
+    "cluster": ["convert", FONT, "--text", "O", "--jobs", "tcp://127.0.0.1:1"],
     "remote": ["convert", "s3://fonts/made.ttf", "--text", "O"],
     "view": ["view", FONT, "--no-browser"],
 }

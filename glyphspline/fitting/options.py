@@ -72,7 +72,7 @@ class Options:
 
     variant: int = option(Method.variant, "Choose how footpoints are sought (Table 1).", METHOD, "0…4")
     tolerance: float | None = option(
-        None, "Keep the curve within this distance of its source, in font units. Without it, --thousandths.",
+        None, "Keep the curve within this distance of its source, in font units. Without it, 1/1000 em.",
         CLOSENESS, "UNITS", rule=positive("distance"),
     )  # fmt: skip
     thousandths: float = option(
@@ -104,7 +104,7 @@ class Options:
     fallback: Fallback = "peak"
     max_ratio: float = MAX_RATIO
     precision: int = option(
-        None, "Write this number of decimals, 0 to 9. Without it, 2; 0 with --continuity g2.", WRITTEN, "N",
+        None, "Write this number of decimals, 0 to 9. Without it, 2; 0 of curves as fonts store them.", WRITTEN, "N",
         rule=whole(0, 9),
     )  # fmt: skip
     residual_tolerance: float | None = None

@@ -267,9 +267,7 @@ def command(
     source: Source, spec: RunSpec, asked: dict[str, Any], others: Sequence[Source] = (), axis: str | None = None
 ) -> Iterator[str]:
     """The arguments of the command line that make the run's files, without the folder: what is not default."""
-    yield from ("glyphspline", spec.verb, source.path.name)
-    for other in others:
-        yield from ("--from", other.path.name)
+    yield from ("glyphspline", spec.verb, *(each.path.name for each in (source, *others)))
     if axis is not None:
         yield from ("--axis", axis)
     for name, value in asked.items():

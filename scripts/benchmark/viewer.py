@@ -13,7 +13,7 @@ from typing import Any
 import matplotlib
 from starlette.testclient import TestClient
 
-from glyphspline.plugins.viewer import make_app
+from glyphspline.plugins.viewer.app import make_app
 
 from .measure import Row, in_words
 

@@ -30,12 +30,10 @@ CONVERSIONS = [
     ["--corners=smooth"],
     ["--step=150"],
     ["--count=8"],
-    ["--effort=best", "--format=svg"],
-    ["--continuity=g2", "--format=svg"],
+    ["--preset=type", "--format=svg"],
     ["--remove-overlaps", "--format=svg"],
-    ["--masters"],
-    ["--masters", "--format=ttf"],
 ]
+REFITS = [["--format=svg"], ["--format=otf"], [], ["--continuity=c2"], ["--masters", "--format=gallery"], ["--masters"]]
 
 
 @pytest.fixture(scope="module")
@@ -72,8 +70,14 @@ def ran(*words: object, status: int = 0) -> str:
 def test_convert(options: list[str], font: Path, tmp_path: Path) -> None:
     text = "o" if options[0] in ("--corners=smooth", "--count=8") else "l"
     facts = json.loads(ran("convert", font, "--text", text, *options, "-j0", "--json", "--out", tmp_path / "out"))
-    (own,) = facts if isinstance(facts, list) else [facts]
-    assert not own["failed"]
+    assert not facts["failed"]
+    assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize("options", REFITS, ids=" ".join)
+def test_refit(options: list[str], font: Path, tmp_path: Path) -> None:
+    facts = json.loads(ran("refit", font, "--text", "l", *options, "-j0", "--json", "--out", tmp_path / "out"))
+    assert not facts["failed"]
     assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
 
 
@@ -97,7 +101,7 @@ def test_dataset_and_report(font: Path, tmp_path: Path) -> None:
 
 
 def test_mend(font: Path, tmp_path: Path) -> None:
-    ran("convert", font, "--text", "lo", "--format", "ufo", "-j0", "--out", tmp_path / "run")
+    ran("refit", font, "--text", "lo", "--format", "ufo", "-j0", "--out", tmp_path / "run")
     (source,) = (tmp_path / "run").rglob("*.ufo")
     ran("mend", source, "-j0", "--out", tmp_path / "mended")
 

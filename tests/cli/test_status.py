@@ -32,9 +32,9 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 CONVERT = "convert {gyosho} --format svg -j 0 --out {new}"
 DONE = [
     f"{CONVERT} --text O",
-    f"{CONVERT} --text O --step 40 --measure",  # no tolerance is asked for
+    f"{CONVERT} --text O --step 40",  # no tolerance is asked for
     "convert {place}/points.ttf --format svg -j 0 --out {new} --all",
-    "convert {variable} --masters --text o --format ttf -j 0 --out {new}",
+    "refit {variable} --masters --text o --format ttf -j 0 --out {new}",
     "dataset {variable} --no-fit --jobs 0 --out {new}",
     "text {gyosho} Og -o {new}.svg",
     "text {dejavu} Hamburg -o {new}.svg",
@@ -50,7 +50,7 @@ UNDONE = [
     f"{CONVERT} --text O --tolerance 0.001",  # nothing is within a tenth of the last digit written
     "convert {place}/broken.ttf --format svg -j 0 --out {new} --all",  # a glyph fails
     "convert {gyosho} {place}/bad.ttf --text O --format svg -j 0 --out {new}",  # one of two fonts
-    "convert {variable} --masters --text o龘 --format ttf -j 0 --out {new}",
+    "refit {variable} --masters --text o龘 --format ttf -j 0 --out {new}",
     "dataset {place}/broken.ttf --no-fit --jobs 0 --out {new}",
     "dataset {variable} {place}/bad.ttf --no-fit --jobs 0 --out {new}",
     "text {gyosho} O龘 -o {new}.svg",
@@ -68,6 +68,8 @@ UNDONE = [
 ]
 UNUSABLE = [
     "convert {place}/bad.ttf --text O -j 0 --out {new}",
+    "refit {place}/bad.ttf -j 0 --out {new}",
+    "refit {gyosho}",  # where to is not said
     "text {place}/bad.ttf O -o {new}.svg",
     "info {place}/bad.ttf",
     "atlas {place}/bad.ttf --text O -o {new}.pdf",

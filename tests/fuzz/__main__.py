@@ -1,4 +1,4 @@
-"""Damaged fonts, UFOs and drawings through info, convert, check, diff and text: ``make fuzz MINUTES=10``.
+"""Damaged fonts, UFOs and drawings through info, convert, refit, check, diff and text: ``make fuzz MINUTES=10``.
 
 ``python -m tests.fuzz [--minutes 10] [--commands N] [--seed 0] [--out outputs/fuzz]``
 
@@ -48,8 +48,8 @@ CALLS = {
     "smooth": "convert FONT --all --step 60 --format svg,json -o out",
     "fitted": "convert FONT --all --format svg,curvature,gallery -o out",
     "sharp": "convert FONT --all --preset type --format svg,dxf -o out",
-    "font": "convert FONT --all --preset type --format ttf,otf,ufo -o out",
-    "masters": "convert FONT --all --masters --format MASTERS -o out",
+    "font": "refit FONT --format ttf,otf,ufo -o out",
+    "masters": "refit FONT --masters --format MASTERS -o out",
     "check": "check FONT --json --html page.html --loglevel info",
     "diff": "diff FONT SOUND --json --html page.html",
     "text": "text FONT ABCagZ龍好 --corners sharp --out text.svg",

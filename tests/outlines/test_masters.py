@@ -207,7 +207,7 @@ def test_components_in_a_loop(tmp_path: Path) -> None:
 
 
 def test_more_masters_than_can_be_weighed_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("glyphspline.readers.opentype.variations.MOST_MASTERS", 1)
+    monkeypatch.setattr("glyphspline.plugins.masters.variations.MOST_MASTERS", 1)
     with pytest.raises(GlyphsplineError, match="glyph 'o': 2 masters, more than 1"):
         open_font(FONTS / "variable.ttf").masters("o")
 

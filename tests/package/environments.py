@@ -34,12 +34,18 @@ assert sys.prefix in gs.__file__, gs.__file__
 extras = set(sys.argv[1:])
 assert {extra for extra in EXTRAS if has(extra)} >= extras & set(EXTRAS)
 if extras & {"view", "all"}:
-    import glyphspline.viewer
-    for name in ("viewer.html", "viewer.css", "viewer.js"):
-        assert files("glyphspline.viewer").joinpath(name).read_bytes(), name
-pages = ("page.html", "findings.html", "findings.css", "findings.js", "places.js", "comparison.html", "comparison.css")
-for name in ("gallery.html", "gallery.js", "theme.css", "shapes.js", "page.js", *pages):
-    assert files("glyphspline.report").joinpath(name).read_bytes(), name
+    import glyphspline.plugins.viewer.app
+pages = {
+    "report": ("gallery.html", "gallery.js", "theme.css", "shapes.js", "page.html", "page.js", "places.js"),
+    "plugins.checks": ("findings.html", "findings.css", "findings.js"),
+    "plugins.comparing": ("comparison.html", "comparison.css"),
+    "plugins.mending": ("mending.html", "mending.css", "mending.js"),
+    "plugins.viewer": ("viewer.html", "viewer.css", "viewer.js"),
+    "plugins.cad": ("polyline.schema.json",),
+}
+for folder, names in pages.items():
+    for name in names:
+        assert files(f"glyphspline.{folder}").joinpath(name).read_bytes(), name
 assert files("glyphspline").joinpath("py.typed").is_file()
 """
 

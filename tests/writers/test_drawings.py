@@ -104,9 +104,18 @@ def test_what_is_no_size_or_colour_is_refused(wrong: dict[str, Any]) -> None:
         gs.to_svg(result(DISC), **wrong)
 
 
+def test_a_height_is_of_the_drawing(tmp_path: Path) -> None:
+    spec = RunSpec(gs.Options(count=24), ("svg", "pdf"), Settings(Appearance(size="20mm")))
+    convert_font(gs.open_font(FONT), ["O"], tmp_path, spec, jobs=0)
+    assert root_of((tmp_path / "svg" / "O.svg").read_text(encoding="utf-8")).attrib["height"] == "20mm"
+    assert media_box((tmp_path / "pdf" / "O.pdf").read_bytes())[3] == pytest.approx(20 / 25.4 * 72, abs=0.01)
+    with pytest.raises(gs.OptionError, match="size and em exclude each other"):
+        Appearance(size="20mm", em="20mm")
+
+
 def test_from_the_shell(tmp_path: Path) -> None:
     given = [
-        "--height",
+        "--size",
         "20mm",
         "--fill",
         "none",
@@ -121,19 +130,13 @@ def test_from_the_shell(tmp_path: Path) -> None:
     files = {path.parent.name: path.read_bytes() for path in tmp_path.rglob("O.*")}
     assert set(files) == {"svg", "png", "pdf", "curvature-png", "curvature-pdf"}
     root = root_of(files["svg"].decode())
-    assert root.attrib["height"] == "20mm"
+    ascent = float(root.attrib["viewBox"].split()[3])
+    height = float(root.attrib["height"].removesuffix("mm"))
+    assert height == pytest.approx(20 * ascent / 1024), "the size is an em's"
     assert root[-1].attrib["stroke"] == "red"
-    assert media_box(files["pdf"])[3] == pytest.approx(20 / 25.4 * 72, abs=0.01)
+    assert media_box(files["pdf"])[3] == pytest.approx(height / 25.4 * 72, abs=0.01)
     assert media_box(files["curvature-pdf"])[3] == 432, "the map has its own size"
     assert "curvature of the" not in files["svg"].decode()
-    run = CliRunner().invoke(app, [*call, "--size", "20mm", "--format", "svg", "--restart"])
-    assert run.exit_code == 0, run.output
-    root = root_of((tmp_path / "svg" / "O.svg").read_text(encoding="utf-8"))
-    ascent = float(root.attrib["viewBox"].split()[3])
-    assert float(root.attrib["height"].removesuffix("mm")) == pytest.approx(20 * ascent / 1024), "the size is an em's"
-    run = CliRunner().invoke(app, [*call, "--size", "20mm", "--height", "20mm", "--restart"])
-    assert run.exit_code == 2
-    assert "--height and --size exclude each other" in run.output
     comb = ["--format", "curvature", "--comb", "source", "--restart"]
     run = CliRunner().invoke(app, [*call, *comb])
     assert run.exit_code == 0, run.output

@@ -1,7 +1,7 @@
 """The columns of a data set's rows, their types and units, and what they hold in words: schema version 2.
 
 With ``rows="glyph"`` each column of a contour is a list with an item for each contour; with ``rows="contour"`` it is
-that item. Contours are stored by the rules of :mod:`..outlines.canonical_outlines`, whatever way the font has them.
+that item. Contours are stored by the rules of :mod:`.canonical_outlines`, whatever way the font has them.
 Lengths are in em or in font units (*normalise*), y up; the metadata of each field says its unit.
 
 A *point* is a list (x, y): of float in ``points`` and ``tangents``, of double elsewhere. Lists of ``points`` points,

@@ -2,7 +2,7 @@
 
 The K masters of an arc are one curve in R^{2K}, interpolated there by variant 2 on one knot vector. An instance is a
 linear combination of the masters, and so a C2 spline on the same knots. With ``continuity="g2"`` the masters have the
-cubics that fonts store instead, with the same nodes in all (:mod:`.sharp.font_curves`). The certificate holds at every
+cubics that fonts store instead, with the same nodes in all (:mod:`.fonts.fit.contours`). The certificate holds at every
 location: see :mod:`..curves.pairing`.
 """
 

@@ -270,8 +270,9 @@ def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redraw
     files = {}
     for _, _, line in recorded_lines(out, record):
         entry = json.loads(line)
-        if entry["status"] == "ok" or (with_empty and entry["status"] == "empty"):
-            files[entry["glyph"]] = entry["files"][RESULTS]
+        path = entry["files"].get(RESULTS)  # None in a run of drawings alone
+        if path and (entry["status"] == "ok" or (with_empty and entry["status"] == "empty")):
+            files[entry["glyph"]] = path
     return MadeOnDemand(files, lambda name: redrawn_glyph(stored(out / files[name], MastersResult, STORED)))
 
 

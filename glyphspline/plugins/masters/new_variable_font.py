@@ -49,7 +49,7 @@ def to_new_variable_font(
         sources: single fonts, UFOs or drawings, the default first; of at least two. Its named instances are these.
         axis: like "wght=300:700", a value a font.
         redrawn: name of a glyph in the default to its contours in all masters, read one by one. The masters are those
-            of :func:`...readers.single_fonts.masters_of_fonts` for the same fonts and axis. Composites are written as
+            of :func:`.single_fonts.masters_of_fonts` for the same fonts and axis. Composites are written as
             simple glyphs. All others look as in the default everywhere.
         tolerance: how far the quadratics, rounded, may be from the contours given, in units of the default.
         family: its name; None is the default's with "Spline".

@@ -146,7 +146,7 @@ def _off_axes(g: int, masters: Masters, location: Mapping[str, float], axes: Seq
 
 
 def by_rounding(default: FloatArray, here: FloatArray, degrees: IntArray) -> FloatArray:
-    """(n,) standard deviations in degrees of joints that rounding turns, see :func:`.segments.rounding_turn`.
+    """(n,) standard deviations in degrees of joints that rounding turns, see :func:`.joints.rounding_turn`.
 
     It is 0 where the default master is not in whole units. Deltas are whole too. Those of points between others are
     not, but no farther off. A cubic may be a quadratic in whole units that was raised, as CFF2 has those of ``glyf``.

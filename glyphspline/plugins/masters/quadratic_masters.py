@@ -26,7 +26,7 @@ def quadratic_masters(source: Font, masters: Masters, options: Options) -> Maste
         source: with outlines of either kind. options: the tolerance, which holds at every location.
 
     Raises:
-        GlyphsplineError: see :func:`...fitting.convert_masters.convert_masters`.
+        GlyphsplineError: see :func:`.convert_masters.convert_masters`.
     """
     tolerance, corners = options.tolerance_for(masters.metrics.units_per_em), masters.weights_at(masters.grid())
     tallies, known = dict[tuple[MasterContour, ...], IntArray](), glyphs_of(source)

@@ -188,7 +188,7 @@ def settled(
 def turns_allowed(layout: Layout, joint: int, turn: float, exact: bool, design: Design) -> FloatArray:
     """(L,) radians by which a joint may turn at the places, so that a check finds no kink; it turned by ``turn``.
 
-    Where handles or segments are short this is more than the threshold, see :func:`.segments.joint_findings`; but not
+    Where handles or segments are short this is more than the threshold, see :func:`.joints.joint_findings`; but not
     if it is to be ``exact``.
     """
     limits = design.thresholds

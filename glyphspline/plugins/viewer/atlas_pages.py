@@ -59,7 +59,7 @@ def atlas_pages(
     Args:
         heading: the font's name.
         glyphs: results in the order of the pages; only one page and the profiled glyphs are held in memory.
-        scale: curvature in 1/unit of a full tooth, from :func:`..svg.curvature_map.curvature_scale`.
+        scale: curvature in 1/unit of a full tooth, from :func:`.svg.comb.curvature_scale`.
         combs: of the overview pages; of "both", the source's is a line.
         in_corners: also where a smooth result turns about a corner.
         profiled: whether a glyph has a profile page, after the overview pages.

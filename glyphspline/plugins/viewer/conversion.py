@@ -1,6 +1,6 @@
 """What the viewer computes, and as JSON for the page: a glyph, with moved vertices, by other variants, step by step.
 
-The page gets path data and lists of points, y down, with two decimals.
+The page gets path data and lists of points, y down, with two decimals; paths of results are as they are written.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from ...outlines.joins import joins
 from ...outlines.masters import MasterContour
 from ...outlines.outline import Contour, Contours, Outline
 from ...readers import Font, open_font
+from ...runs.spec import RunSpec
 from ...types import BoolArray, FloatArray, rounded_up
 from ...writers.json_file import finite
 from ...writers.svg.comb import curvature_scale
@@ -116,13 +117,22 @@ class Work:
         return curvature_scale(as_glyph(self.outline(name, ())) for name in filter(self.has_ink, chosen)) or 4 / self.em
 
     def command(self, state: State, along: str | None = None) -> str:
-        """The command that converts the glyph, without moved vertices, or that draws it ``along`` an axis."""
+        """The command that converts the glyph, without moved vertices, or that draws it ``along`` an axis.
+
+        Curves as fonts store them are those of ``refit``.
+        """
         gid = str(self.font.glyph_names.index(state.glyph))
         words = [str(self.path), "--gids", gid, *instance_arguments(self.face_index, dict(state.location))]
-        words += chain(*arguments(replace(state.options, measure=False), Options()).values())
-        if along is None:
-            return shlex.join(["glyphspline", "convert", *words, "--out", f"outputs/gid-{gid}"])
-        return shlex.join(["glyphspline", "atlas", *words, "--axis", along, "--out", f"gid-{gid}.pdf"])
+        options = replace(state.options, measure=False)
+        if along is not None:
+            words += [*chain(*arguments(options, Options()).values()), "--axis", along, "--out", f"gid-{gid}.pdf"]
+            return shlex.join(["glyphspline", "atlas", *words])
+        if options.is_for_fonts:
+            verb, words = "refit", [*words, "--format", "svg"]
+            own = arguments(options, Options(corners="sharp", continuity="g2"))
+        else:
+            verb, own = "convert", arguments(options, Options(), RunSpec.unshown)
+        return shlex.join(["glyphspline", verb, *words, *chain(*own.values()), "--out", f"outputs/gid-{gid}"])
 
 
 def moved(result: GlyphResult, moves: Moved) -> GlyphResult:
@@ -202,7 +212,7 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
     arcs = [arc for contour in result.contours for arc in contour.interpolations]
     return {
         "variant": result.options.variant,
-        "result": path_data((contour.curve for contour in result.contours), DIGITS),
+        "result": path_data((contour.curve for contour in result.contours), result.options.precision),
         "polygons": [points(contour.polygon) for contour in result.contours],
         "movable": [is_smooth(contour) for contour in result.contours],
         "notes": list(result.notes),

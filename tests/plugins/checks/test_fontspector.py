@@ -18,7 +18,7 @@ from glyphspline.plugins.checks.fontspector import CHECK, LISTED, PROFILE, SOURC
 from tests.places import ROOT
 
 FONT = ROOT / "fonts_test" / "kouzan-gyosho.otf"
-CALL = "import sys; from glyphspline.fontspector import main; sys.exit(main())"
+CALL = "import sys; from glyphspline.plugins.checks.fontspector import main; sys.exit(main())"
 SEVERITIES = {"SKIP", "INFO", "PASS", "WARN", "FAIL", "FATAL", "ERROR"}
 
 needs_api = pytest.mark.skipif(not has("fontspector"), reason="fontspectorapi is not installed")

@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli.app import app
-from glyphspline.cli.tables import difference_lines, differences_table
 from glyphspline.plugins.comparing.job import FontDifference, Pair, Pairs, compare_fonts
+from glyphspline.plugins.comparing.tables import difference_lines, differences_table
 from glyphspline.runs.folder import entries_of
 from glyphspline.types import Head
 from tests.places import DEJAVU, FONTS
@@ -121,9 +121,9 @@ def some_of(font: Path, glyphs: list[str], out: Path) -> Path:
 
 
 def converted(font: Path, kind: str, tolerance: float | None, out: Path) -> None:
-    """Convert a font into another kind, and compare: nothing that is certified within the tolerance is beyond it."""
+    """Write a font as another kind, and compare: nothing that is certified within the tolerance is beyond it."""
     asked = [] if tolerance is None else ["--tolerance", str(tolerance)]
-    call = ["convert", str(font), "--all", "--format", kind, *asked, "--out", str(out), "--jobs", "0"]
+    call = ["refit", str(font), "--format", kind, *asked, "--out", str(out), "--jobs", "0"]
     status = runner.invoke(app, call).exit_code
     missed = {
         entry["glyph"]

@@ -704,7 +704,7 @@ def test_many_characters_are_shaped_in_parts(font: gs.Font) -> None:
 
 
 def test_layout_is_a_function_whatever_was_imported() -> None:
-    code = "import glyphspline.typesetting.placed as placed, glyphspline as gs; placed.NAME; gs.layout.__kwdefaults__"
+    code = "import glyphspline.plugins.text.placed as placed, glyphspline as gs; placed.NAME; gs.layout.__kwdefaults__"
     subprocess.run([sys.executable, "-c", code], check=True)
 
 

@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 import glyphspline as gs
 from glyphspline.cli.app import app
 from glyphspline.outlines.joins import joins
-from glyphspline.plugins.viewer import atlas
+from glyphspline.plugins.viewer import atlas, notebook
 from glyphspline.plugins.viewer.atlas import make_atlas
 from glyphspline.plugins.viewer.atlas_pages import overview, profile
 from glyphspline.writers.settings import Maps
@@ -44,12 +44,26 @@ def axes() -> Any:
     return figure.add_subplot()
 
 
+@pytest.fixture(autouse=True)
+def in_a_notebook() -> None:
+    notebook.install()
+
+
 def html_of(thing: Any) -> str:
     return str(thing._repr_html_())
 
 
 def svg_of(thing: Any) -> str:
     return str(thing._repr_svg_())
+
+
+def test_where_ipython_runs_public_names_bring_display(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(gs.Spline, "_repr_svg_")
+    assert gs.__getattr__("Spline") is gs.Spline
+    assert not hasattr(gs.Spline, "_repr_svg_")
+    monkeypatch.setitem(sys.modules, "IPython", sys)
+    assert gs.__getattr__("Spline") is gs.Spline
+    assert hasattr(gs.Spline, "_repr_svg_")
 
 
 def test_outlines_splines_and_results_show_themselves(glyph: gs.GlyphResult) -> None:

@@ -32,7 +32,7 @@ class Quads(NamedTuple):
             points.
         T: (K, R + 1, 2) unit tangents at nodes. tied: (R, 2) whether a control point is on that of its start, or end.
         beyond: (K, R + 1, 2) where tied, what is beyond the node.
-        slack, least, own, reach: (R + 1,) turns from it as in :class:`.font_outlines.Given`.
+        slack, least, own, reach: (R + 1,) turns from it as in :class:`.fit.outlines.Given`.
         fixed: (R,) control points that do not move. held: (R,) quadratics of the source.
         owner: (R,) their sections. lo: (R + 1,) samples at which they meet.
     """

@@ -1,4 +1,4 @@
-"""``continuity="g2"``: contours as fonts store them, of :mod:`.font_curves`, measured."""
+"""``continuity="g2"``: contours as fonts store them, of :mod:`.contours`, measured."""
 
 from __future__ import annotations
 
@@ -263,7 +263,7 @@ def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:
 
 
 def findings(contours: ContourArrays, em: float) -> FloatArray:
-    """(n, 7) what a check finds at joints, in segments and bends, see :data:`...checks.segments.WHAT`; as ``TURNING``
+    """(n, 7) what a check finds at joints, in segments and bends, see :data:`.flaws.joints.WHAT`; as ``TURNING``
     the joints of curves that turn as kinks do, also those that a check takes for rounding's."""
     cubics, limits = all_cubics(contours), THRESHOLDS.limits(em)
     segments = Segments.of(cubics, contours)

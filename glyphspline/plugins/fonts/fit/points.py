@@ -1,4 +1,4 @@
-"""Points of contours as TrueType stores them, of :mod:`.font_quadratics`, and as few kinks as the grid allows."""
+"""Points of contours as TrueType stores them, of :mod:`.quadratics`, and as few kinks as the grid allows."""
 
 from __future__ import annotations
 
@@ -284,7 +284,7 @@ def more_findings(source: ContourArrays, made: ContourArrays, em: float) -> Bool
 
 
 def placed_findings(contours: ContourArrays, em: float) -> tuple[FloatArray, FloatArray]:
-    """What :func:`.font_fit.findings` finds, and (n, 2) where."""
+    """What :func:`.fit.fit.findings` finds, and (n, 2) where."""
     found = findings(contours, em)
     segments = np.floor(found[:, PLACE]).astype(np.int64)
     cubics = all_cubics(contours)[contours.offsets[found[:, CONTOUR].astype(np.int64)] + segments]
