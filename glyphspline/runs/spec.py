@@ -74,6 +74,19 @@ def needs_fit(formats: Sequence[str], options: Options) -> bool:
     return False
 
 
+def kinds_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
+    """The kinds of work of :mod:`.small_runs` in a run with these options; None: nothing is converted."""
+    if options is None:
+        return []
+    rest = ["rest"] if options.remove_overlaps else []
+    if formats and not needs_fit(formats, options):
+        return ["unfitted", *rest]
+    fit = "g2" if options.is_for_fonts else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" and not options.is_for_fonts else []
+    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
+    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
+
+
 @dataclass(frozen=True)
 class Limits:
     """Limits beyond which a glyph fails.
@@ -175,8 +188,6 @@ class RunSpec:
     @property
     def kinds(self) -> list[str]:
         """The kinds of work of the run, see :func:`.small_runs.work`."""
-        from .schedule import kinds_for
-
         return kinds_for(self.options, self.formats)
 
     @cached_property

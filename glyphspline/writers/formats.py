@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from ..fitting.options import Options
     from ..fitting.results import GlyphResult
     from ..readers import Source
-    from ..runs.spec import RunSpec
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _SUFFIX = re.compile(r"(\.[A-Za-z0-9]+)+")
@@ -93,9 +92,9 @@ class ResultsFormat(WholeFormat):
 
     @abstractmethod
     def write(
-        self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec
+        self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any
     ) -> tuple[list[str], Mapping[str, Any]]:
-        """Write the file; returns remarks, and what it holds of glyphs by name.
+        """Write the file; returns remarks, and what it holds of glyphs by name. ``spec`` is the run's.
 
         Raises:
             OutputError: it cannot be written. GlyphsplineError: the source cannot become such a file.

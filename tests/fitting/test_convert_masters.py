@@ -25,11 +25,11 @@ from glyphspline.fitting.measures import geometry
 from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.outlines.outline import Contours
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
-from glyphspline.plugins.fonts.ufo_folder import write_designspace
 from glyphspline.plugins.masters.convert_masters import MastersContourResult, changes_at
 from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.new_designspace import write_designspace
 from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
+from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.plugins.masters.single_fonts import masters_of_fonts
 from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.readers import Font

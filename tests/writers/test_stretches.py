@@ -21,13 +21,13 @@ from glyphspline.outlines.flaws.kinds import KINK, THRESHOLDS
 from glyphspline.outlines.flaws.turns import joint_controls, turns_of
 from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.plugins.fonts.tables.font_file import replace_family
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
-from glyphspline.plugins.fonts.tables.other_outlines import to_other_outlines
-from glyphspline.plugins.fonts.tables.stretches import ranges_of
 from glyphspline.plugins.masters.convert_masters import convert_masters
 from glyphspline.plugins.masters.job import redrawn_glyph
 from glyphspline.plugins.masters.on_axes import on_axes
+from glyphspline.plugins.masters.other_outlines import to_other_outlines
 from glyphspline.plugins.masters.quadratic_masters import quadratic_masters
+from glyphspline.plugins.masters.redrawn import Redrawn
+from glyphspline.plugins.masters.stretches import ranges_of
 from glyphspline.plugins.masters.variable_font import VariableSummary, to_variable_font
 from glyphspline.readers import Font
 from tests.places import FONTS

@@ -11,7 +11,6 @@ from ...fields import WRITTEN, option
 from ...fitting.options import Options
 from ...runs.spec import RunSpec
 from ...writers.formats import WholeFormat
-from .formats import BACK
 
 if TYPE_CHECKING:
     from ...readers import Source
@@ -74,7 +73,11 @@ class RefitSpec(RunSpec):
     @cached_property
     def whole(self) -> tuple[WholeFormat, ...]:
         """The run's formats with one file a font, and the source."""
-        return (*super().whole, *([BACK] if self.is_back else []))
+        if not self.is_back:
+            return super().whole
+        from .formats import BACK  # imports fontTools
+
+        return (*super().whole, BACK)
 
     @property
     def kinds(self) -> list[str]:

@@ -52,13 +52,13 @@ from ...types import FloatArray, MadeOnDemand, counted, listed, rounded_up
 from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
-from ..fonts.back.back import editable, of_masters
+from ..fonts.back.back import editable
 from ..fonts.formats import back_to_source
 from ..fonts.spec import RefitSpec
 from ..fonts.tables.font_glyphs import SHARE, Flavour
-from ..fonts.tables.master_deltas import Redrawn, StoredGlyph, bound_of
 from .convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
 from .designspace import Designspace, GlyphsFile
+from .redrawn import Redrawn, StoredGlyph, bound_of, of_masters
 from .single_fonts import Unmatched, axis_of, masters_of_fonts
 
 if TYPE_CHECKING:
@@ -326,8 +326,8 @@ def _font(
     sources: Sequence[Source], redrawn: Mapping[str, Redrawn], flavour: Flavour, spec: RefitSpec, axis: str | None
 ) -> tuple[bytes, VariableSummary]:
     """A variable font of the new contours: the source's own, with outlines of its kind or the other, or a new one."""
-    from ..fonts.tables.other_outlines import to_other_outlines
     from .new_variable_font import to_new_variable_font
+    from .other_outlines import to_other_outlines
     from .variable_font import flavour_of, to_variable_font
 
     source = sources[0]
@@ -371,7 +371,7 @@ def _write_fonts(
         for to in [copy] * ("ufo" in spec.formats) + [None] * spec.is_back:
             summary.remarks += back_to_source(source, of_masters(source, redrawn), spec, to)
     elif "ufo" in spec.formats:
-        from ..fonts.ufo_folder import write_designspace
+        from .new_designspace import write_designspace
 
         left = write_designspace(source, redrawn, paths["ufo"])
         summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")

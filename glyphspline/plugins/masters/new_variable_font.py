@@ -26,8 +26,9 @@ from ...readers import Font, Source
 from ...types import MadeOnDemand
 from ..fonts.tables.font_file import postscript, saved, stored_names, to_font
 from ..fonts.tables.font_glyphs import decomposed, users
-from ..fonts.tables.master_deltas import Redrawn, axes_of, check_steps, oriented, rounded_deltas
+from ..fonts.tables.master_deltas import axes_of, check_steps, rounded_deltas
 from ..fonts.tables.variable_glyf import PHANTOMS
+from .redrawn import Redrawn, oriented
 from .single_fonts import axis_of
 from .variable_font import VariableSummary, to_variable_font
 

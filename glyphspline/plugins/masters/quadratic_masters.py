@@ -13,10 +13,10 @@ from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
 from ...types import IntArray
 from ..fonts.tables.font_glyphs import drop_endless
-from ..fonts.tables.quadratic_contours import in_quadratics, unchanged
-from ..fonts.tables.stretches import Turning, tally
-from ..fonts.tables.variable_glyf import Quadratics
 from .convert_masters import MastersContourResult, MastersResult, convert_masters, is_regular
+from .quadratic_contours import in_quadratics, unchanged
+from .quadratic_glyphs import Quadratics
+from .stretches import Turning, tally
 
 
 def quadratic_masters(source: Font, masters: Masters, options: Options) -> MastersResult:
