@@ -62,7 +62,8 @@ class Commands(TyperGroup):
         try:
             return super().resolve_command(ctx, args)
         except Exception as error:
-            error.message += hooks.away_words()  # type: ignore[attr-defined]
+            if hasattr(error, "message"):
+                error.message += hooks.away_words()
             raise
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:

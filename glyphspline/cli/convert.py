@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Conversion:
-    """A call of ``convert``.
+    """A call of ``convert`` or ``refit``.
 
     Attributes:
         out: folder. spec: how glyphs are converted, and what is written. subset: which glyphs. instance: of the font.
-        run: how the command runs, and what it prints.
+        run: how the command runs, and what it prints. stays: whether the folder is there when the command has ended.
     """
 
     out: Path
@@ -38,6 +38,7 @@ class Conversion:
     subset: opt.Subset
     instance: opt.Instance
     run: opt.RunOptions
+    stays: bool = True
 
 
 @grouped
@@ -172,8 +173,8 @@ def run_face(
     if run.json_log:
         say(json.dumps({"out": str(out), **summary.facts()}))
     elif not run.quiet:
-        seen = f"open {out / 'index.html'}" if GALLERY in call.spec.formats else f"written to {out}"
-        say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}; {seen}")
+        seen = f"; open {out / 'index.html'}" if GALLERY in call.spec.formats else f"; written to {out}"
+        say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}{seen if call.stays else ''}")
         for line in summary.lines():
             say(f"  {line}" if name else line)
     return summary

@@ -123,7 +123,7 @@ class RunSpec:
         options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
-        verb: the command of such a run.
+        verb: the command of such a run. needs_formats: whether it writes nothing without.
 
     Raises:
         OptionError: one of these is none of what it can be.
@@ -143,11 +143,12 @@ class RunSpec:
     limits: Limits = LIMITS
     maps: Maps = field(default_factory=Maps)
     verb: ClassVar[str] = "convert"
+    needs_formats: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
-        if not (self.formats or self.whole):
+        if self.needs_formats and not self.formats:
             raise OptionError(f"no format given: there are {', '.join(available())}")
         for name in self.formats:
             if not isinstance(name, str) or not (name == GALLERY or is_format(name) or whole_named(name)):
@@ -276,8 +277,7 @@ def command(
 ) -> Iterator[str]:
     """The arguments of the command line that make the run's files, without the folder: what is not default."""
     yield from ("glyphspline", spec.verb, source.path.name)
-    for other in others:
-        yield from ("--from", other.path.name)
+    yield from (other.path.name for other in others)
     if axis is not None:
         yield from ("--axis", axis)
     for name, value in asked.items():

@@ -73,6 +73,9 @@ class WholeFormat(ABC):
     verb: ClassVar[str] = "convert"
     always: ClassVar[bool] = False
 
+    def check(self, source: Source) -> None:  # noqa: B027 -- most sources can
+        """Raise a GlyphsplineError before the run if a source cannot become such a file."""
+
     def path(self, source: Source, out: Path) -> Path:
         """The file in a run's folder."""
         stem = re.sub(r"[^\w-]+", "", source.family)[:50] or "font"

@@ -121,12 +121,8 @@ class Back(Ufo):
 
     name, always = "source", True
 
-    def path(self, source: Source, out: Path) -> Path:
-        """Where the source is."""
-        return source.path
-
-    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any) -> Written:
-        """Write outlines into the source, and read it back."""
+    def check(self, source: Source) -> None:
+        """Refuse what takes no outlines back, or not so."""
         from ...readers.ufo import Ufo as OpenedUfo
         from .back.back import editable
 
@@ -134,6 +130,13 @@ class Back(Ufo):
             raise OutputError(
                 "the outlines of a designspace go back in all masters: add --masters", font=str(source.path)
             )
+
+    def path(self, source: Source, out: Path) -> Path:
+        """Where the source is."""
+        return source.path
+
+    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any) -> Written:
+        """Write outlines into the source, and read it back."""
         return self.put_back(source, glyphs, spec, None)
 
 

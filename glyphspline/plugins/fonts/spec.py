@@ -24,7 +24,7 @@ class RefitSpec(RunSpec):
     """How outlines are fitted again, and where they go.
 
     Attributes:
-        formats: of whole fonts, and drawings of the results; none where outlines go into the source.
+        formats: of whole fonts, and drawings of the results; none where outlines go into the source alone.
         keep_name: whether written fonts have the source's family name.
         in_place, layer: write new outlines into the source, in place of the old ones or into a layer beside them.
         masters: all masters of a variable font at once.
@@ -35,12 +35,15 @@ class RefitSpec(RunSpec):
 
     options: Options = field(default_factory=lambda: FOR_FONTS)
     formats: tuple[str, ...] = option(
-        (), "Write these formats: otf, ttf, ufo; drawings of the new outlines too.", WRITTEN, "NAME,…", flags="--format"
-    )
+        (),
+        "Write otf, ttf or ufo, and drawings of the new outlines: svg, gallery and other formats of convert. Without "
+        "it, what the source is.",
+        WRITTEN, "NAME,…", flags="--format",
+    )  # fmt: skip
     masters: bool = option(
         False,
-        "Fit all masters of a variable font or designspace at once, to a variable font (--format otf, ttf), "
-        "designspace (ufo), or back into the source.",
+        "Fit all masters of a variable font or designspace at once: into a variable font (otf, ttf), a designspace "
+        "(ufo), or the source.",
         WRITTEN,
     )  # fmt: skip
     keep_name: bool = option(
@@ -48,15 +51,15 @@ class RefitSpec(RunSpec):
         WRITTEN,
     )  # fmt: skip
     in_place: bool = option(
-        False, "Write new outlines into the source, a UFO, designspace or Glyphs file. Nothing else in it changes.",
+        False, "Write into the source: a UFO, designspace, Glyphs file or drawing. Nothing else in it changes.",
         WRITTEN,
     )  # fmt: skip
     layer: str | None = option(
-        None, "Write new outlines into this layer of the source, beside the old ones: glyphspline without a NAME.",
+        None, "Write into this layer of the source, beside the old outlines: glyphspline without a NAME.",
         WRITTEN, "[NAME]",
     )  # fmt: skip
 
-    verb = "refit"
+    verb, needs_formats = "refit", False
 
     def __post_init__(self) -> None:
         if self.in_place and self.layer is not None:

@@ -98,9 +98,8 @@ class MastersJob(Output, Job[Task, list[Done]]):
         if in_quadratics(self.spec):
             from .quadratic_masters import quadratic_masters
 
-            (font,) = sources(*self.places)
-            assert isinstance(font, Font)
-            result = quadratic_masters(font, masters, self.options)
+            (font, *others) = sources(*self.places)
+            result = quadratic_masters(font if isinstance(font, Font) and not others else None, masters, self.options)
         else:
             result = convert_masters(masters, self.options)
         glyph, nothing = default_glyph(result), PathData("", None)
@@ -243,8 +242,8 @@ def _check(sources: Sequence[Source], spec: RefitSpec, axis: str | None) -> None
     if unknown := [name for name in spec.formats if name not in FORMATS]:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     check_options(spec.options)
-    if in_quadratics(spec) and (axis is not None or not isinstance(font, Font) or {"otf", "ufo"} & {*spec.formats}):
-        raise GlyphsplineError('beside otf and ufo, and of single fonts, ttf is made of curves of continuity "c2"')
+    if in_quadratics(spec) and {"otf", "ufo"} & {*spec.formats}:
+        raise GlyphsplineError("ttf has quadratics: ask for otf and ufo in another run, or for --continuity c2")
     if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
         editable(font)
         raise OutputError("the outlines of a UFO go back without --masters", font=str(font.path))

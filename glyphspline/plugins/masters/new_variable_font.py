@@ -69,11 +69,16 @@ def to_new_variable_font(
     styles = _styles(sources, values)
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
     add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
-    drawn = MadeOnDemand(given, lambda stored: oriented(redrawn[given[stored]], "ttf"))
+    drawn = MadeOnDemand(given, lambda stored: _as_new(redrawn[given[stored]]))
     data, summary = to_variable_font(opened(font, default.path), drawn, "ttf", tolerance=tolerance)
     glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
     left = {given[stored]: reason for stored, reason in summary.left.items()}
     return _finished(data, list(summary.left)), replace(summary, glyphs=glyphs, left=left)
+
+
+def _as_new(new: Redrawn) -> Redrawn:
+    """A glyph of which the font in the making holds no contour: what it has there is the default's."""
+    return replace(oriented(new, "ttf"), numbers=(-1,) * len(new.contours))
 
 
 def _check(default: Source, design: DesignAxis, redrawn: Mapping[str, Redrawn]) -> None:
