@@ -25,9 +25,8 @@ from fontTools.subset import Options, Subsetter
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
-from glyphspline.fitting.options import FOR_FONTS
+from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.runs.convert import convert_font
-from glyphspline.runs.spec import RunSpec
 from tests.farthest import cubics, farthest
 
 from .survey import faces, parser, table
@@ -99,7 +98,7 @@ def part_of(path: Path, count: int) -> bytes:
 def written(path: Path, kind: str, folder: Path, jobs: int) -> tuple[list[Glyph], float]:
     """Write a font in a format; its glyphs as they are there, and the seconds that writing took."""
     source, began = gs.open_font(path), time.perf_counter()
-    convert_font(source, source.glyph_names, folder, RunSpec(gs.Options(**FOR_FONTS), (kind,)), jobs=jobs)
+    convert_font(source, source.glyph_names, folder, RefitSpec(gs.Options(continuity="g2"), (kind,)), jobs=jobs)
     seconds = time.perf_counter() - began
     (made,) = folder.glob(f"*.{kind}")
     fonts = TTFont(path), TTFont(made)

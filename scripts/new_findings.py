@@ -40,8 +40,8 @@ FACES = (
 )  # fmt: skip
 
 WAYS = {
-    "otf": ("convert", "--all", "--format", "otf"),
-    "ttf": ("convert", "--all", "--format", "ttf"),
+    "otf": ("refit", "--format", "otf"),
+    "ttf": ("refit", "--format", "ttf"),
     "mend": ("mend",),
     "mend-all": ("mend", "--kinds", ",".join(MENDED)),
 }

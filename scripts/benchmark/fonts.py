@@ -19,7 +19,6 @@ from fontTools.ttLib import TTFont
 
 import glyphspline as gs
 from glyphspline.fitting.convert import unfitted
-from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.plugins.fonts.tables.font_file import write_font
 from glyphspline.plugins.fonts.tables.font_glyphs import drawn_result
 from glyphspline.readers import Source
@@ -42,7 +41,7 @@ FACES = {
 }  # fmt: skip
 """Files and characters. Of Han faces a subset is written."""
 
-OPTIONS = gs.Options(**FOR_FONTS)
+OPTIONS = gs.Options(continuity="g2")
 FORGED = int(os.environ.get("GLYPHSPLINE_BENCH_FORGED", "63"))  # glyphs of a face that FontForge simplifies
 
 

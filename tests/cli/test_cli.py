@@ -189,8 +189,8 @@ def test_report_writes_the_index_anew(tmp_path: Path) -> None:
 
 def test_report_shows_the_command_that_adds_a_gallery(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     out = tmp_path / "out"
-    options = ["--text", "O", "--step", "90", "--out", str(out), "--jobs", "0", "--format", "svg,otf"]
-    assert runner.invoke(app, ["convert", FONT, *options]).exit_code == 0
+    options = ["--text", "O", "--tolerance", "4", "--out", str(out), "--jobs", "0", "--format", "svg,otf"]
+    assert runner.invoke(app, ["refit", FONT, *options]).exit_code == 0
     assert not (out / "index.html").exists()
     result = runner.invoke(app, ["report", str(out)])
     assert result.exit_code == 2

@@ -17,7 +17,6 @@ from glyphspline.cli.app import app
 from glyphspline.code_files import OFF, PLACE, kept
 from glyphspline.plugins.viewer.app import make_app
 from glyphspline.report import FOLDER as GALLERY
-from glyphspline.runs.spec import WHOLE
 from glyphspline.writers.formats import OURS
 from tests.variable_fonts import polygon, quadratic, variable_font
 
@@ -26,16 +25,15 @@ ON = [True, False] * 4
 BOX = [(50, 0), (150, 0), (150, 700), (50, 700)]
 
 CONVERSIONS = [
-    *([f"--format={name}"] for name in (*OURS, GALLERY, *WHOLE)),
+    *([f"--format={name}"] for name in (*OURS, GALLERY, "parquet")),
     ["--corners=smooth"],
     ["--step=150"],
     ["--count=8"],
     ["--effort=best", "--format=svg"],
     ["--continuity=g2", "--format=svg"],
     ["--remove-overlaps", "--format=svg"],
-    ["--masters"],
-    ["--masters", "--format=ttf"],
 ]
+FITS = [*([f"--format={name}"] for name in ("otf", "ttf", "ufo")), ["--masters", "--format=gallery"], ["--masters"]]
 
 
 @pytest.fixture(scope="module")
@@ -68,10 +66,12 @@ def ran(*words: object, status: int = 0) -> str:
     return found.stdout
 
 
-@pytest.mark.parametrize("options", CONVERSIONS, ids=" ".join)
-def test_convert(options: list[str], font: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("verb", "options"), [*(("convert", each) for each in CONVERSIONS), *(("refit", each) for each in FITS)]
+)
+def test_convert_and_refit(verb: str, options: list[str], font: Path, tmp_path: Path) -> None:
     text = "o" if options[0] in ("--corners=smooth", "--count=8") else "l"
-    facts = json.loads(ran("convert", font, "--text", text, *options, "-j0", "--json", "--out", tmp_path / "out"))
+    facts = json.loads(ran(verb, font, "--text", text, *options, "-j0", "--json", "--out", tmp_path / "out"))
     (own,) = facts if isinstance(facts, list) else [facts]
     assert not own["failed"]
     assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
@@ -97,7 +97,7 @@ def test_dataset_and_report(font: Path, tmp_path: Path) -> None:
 
 
 def test_mend(font: Path, tmp_path: Path) -> None:
-    ran("convert", font, "--text", "lo", "--format", "ufo", "-j0", "--out", tmp_path / "run")
+    ran("refit", font, "--text", "lo", "--format", "ufo", "-j0", "--out", tmp_path / "run")
     (source,) = (tmp_path / "run").rglob("*.ufo")
     ran("mend", source, "-j0", "--out", tmp_path / "mended")
 

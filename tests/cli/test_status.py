@@ -34,7 +34,7 @@ DONE = [
     f"{CONVERT} --text O",
     f"{CONVERT} --text O --step 40 --measure",  # no tolerance is asked for
     "convert {place}/points.ttf --format svg -j 0 --out {new} --all",
-    "convert {variable} --masters --text o --format ttf -j 0 --out {new}",
+    "refit {variable} --masters --text o --format ttf -j 0 --out {new}",
     "dataset {variable} --no-fit --jobs 0 --out {new}",
     "text {gyosho} Og -o {new}.svg",
     "text {dejavu} Hamburg -o {new}.svg",
@@ -50,7 +50,7 @@ UNDONE = [
     f"{CONVERT} --text O --tolerance 0.001",  # nothing is within a tenth of the last digit written
     "convert {place}/broken.ttf --format svg -j 0 --out {new} --all",  # a glyph fails
     "convert {gyosho} {place}/bad.ttf --text O --format svg -j 0 --out {new}",  # one of two fonts
-    "convert {variable} --masters --text o龘 --format ttf -j 0 --out {new}",
+    "refit {variable} --masters --text o龘 --format ttf -j 0 --out {new}",
     "dataset {place}/broken.ttf --no-fit --jobs 0 --out {new}",
     "dataset {variable} {place}/bad.ttf --no-fit --jobs 0 --out {new}",
     "text {gyosho} O龘 -o {new}.svg",
@@ -76,6 +76,10 @@ UNUSABLE = [
     "view {place}/bad.ttf --no-browser",
     "demo {place}/bad.ttf -j 0 -o {new}",
     f"{CONVERT} --text 龘",
+    "convert {gyosho} --text O --format otf -j 0 --out {new}",  # refit does that
+    "refit {gyosho} --text O -j 0",  # nor is it said where to
+    "refit {gyosho} --in-place -j 0",
+    "refit {variable} --masters --format otf,ttf -j 0 --out {new}",  # cubics and quadratics of one fit
     "dataset {place}/none --jobs 0 --out {new}",
     "report {place}",
     "warm --jobs two",

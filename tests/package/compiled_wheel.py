@@ -74,7 +74,7 @@ COMMANDS: dict[str, Sequence[str | Path]] = {
     "smooth": ["convert", BRUSH, "--text", "龍", "--preset", "paper", "--out", "smooth"],
     "sharp": ["convert", BRUSH, "--text", "好", "--format", "svg,curvature", "--out", "sharp"],
     "type": ["convert", VARIABLE, "--all", "--preset", "type", "--out", "type"],
-    "masters": ["convert", VARIABLE, "--masters", "--all", "--preset", "type", "--format", "ttf", "--out", "masters"],
+    "masters": ["refit", VARIABLE, "--masters", "--preset", "type", "--format", "ttf", "--out", "masters"],
     "check": ["check", VARIABLE],
     "diff": ["diff", BRUSH, FONTS / "kouzan-kaisho.ttf", "--text", "龍"],
     "text": ["text", BRUSH, "好", "--out", "text.svg"],

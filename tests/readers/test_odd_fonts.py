@@ -13,13 +13,13 @@ from fontTools.ttLib.tables.DefaultTable import DefaultTable
 import glyphspline as gs
 from glyphspline.errors import FontError
 from glyphspline.fitting.options import Options
+from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.plugins.fonts.tables.font_file import to_font
 from glyphspline.readers import open_font
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
-from glyphspline.runs.spec import RunSpec
 from tests.places import FONTS
-from tests.writers.test_font import largest_distance
+from tests.plugins.fonts.test_font import largest_distance
 
 
 def with_pictures(path: Path, *, outlines: bool) -> Path:
@@ -70,7 +70,7 @@ def test_a_colour_glyph_is_its_own_outline_and_its_layers_are_glyphs(tmp_path: P
 def test_empty_and_degenerate_glyphs_and_notdef_in_a_run(tmp_path: Path) -> None:
     font = open_font(FONTS / "edge-cases.ttf")
     names = font.select(glyphs=".notdef space hollow flat onepoint twopoints")
-    spec = RunSpec(Options(step=60), ("svg", "ufo", "otf", "ttf", "parquet"))
+    spec = RefitSpec(Options(step=60), ("svg", "ufo", "otf", "ttf"))
     convert_font(font, names, tmp_path / "out", spec, jobs=0)
     status = {entry["glyph"]: (entry["status"], len(entry["contours"])) for entry in entries_of(tmp_path / "out")}
     assert status == {

@@ -46,8 +46,8 @@ TEXT = "abcdefghijklmnopqr"
 CASES = [
     ("worst.ttf", "convert {font} --all --format svg --jobs 1 --out out", 1, ["laugh4", "laugh10", "self", "loop"]),
     ("worst.otf", "convert {font} --all --format svg --jobs 1 --out out", 1, ["nested", "self", "most", "long"]),
-    ("worst.ttf", "convert {font} --gids 0-4,12-14,17,18 --masters --format ttf --jobs 1 --out out", 1, ["most"]),
-    ("worst.ttf", "convert {font} --gids 0-4,12-14,17,18 --masters --format otf --jobs 1 --out out", 1, ["most"]),
+    ("worst.ttf", "refit {font} --gids 0-4,12-14,17,18 --masters --format ttf --jobs 1 --out out", 1, ["most"]),
+    ("worst.ttf", "refit {font} --gids 0-4,12-14,17,18 --masters --format otf --jobs 1 --out out", 1, ["most"]),
     ("worst.ttf", f"text {{font}} {TEXT} --out out.svg", 1, ["laugh10"]),
     ("worst.otf", f"text {{font}} {TEXT} --out out.svg", 1, ["nested", "self", "most", "long"]),
     ("worst.ttf", "check {font} --jobs 1", 1, ["laugh4"]),

@@ -9,5 +9,6 @@ from ...hooks import Plugin
 
 PLUGIN = Plugin(
     readers={"drawings": ".svg:READER"},
+    work={"distances": ".work:distances"},
     services={"refit_drawings": ".job:refit_drawings"},
 )

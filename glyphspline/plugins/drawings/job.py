@@ -83,7 +83,7 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
     found: dict[Path, Rewritten | str] = {}
     quiet = how.quiet or how.json_log
     with (
-        workers(how.jobs, kinds=kinds_for(options), expected=1, scheduler=how.scheduler) as pool,
+        workers(how.jobs, kinds=[*kinds_for(options), "distances"], expected=1, scheduler=how.scheduler) as pool,
         progress(how.quiet, json_log=how.json_log) as observer,
     ):
         for part in run(

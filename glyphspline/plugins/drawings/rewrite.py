@@ -20,7 +20,7 @@ import numpy as np
 
 from ...errors import GlyphsplineError
 from ...fitting.options import Options
-from ...outlines.outline import FontMetrics, Outline
+from ...outlines.outline import Contours, FontMetrics, Outline
 from ...readers.pens import ContourPen
 from ...readers.source import parsed, reason
 from ...runs.spec import LIMITS
@@ -29,6 +29,9 @@ from .svg import FLIP, draw_path, metrics_of, shapes, view_box
 
 AT_NODES = re.compile(r"marker|stroke-dash")
 """What of a style is drawn at the nodes of a path, or from its first one on."""
+
+PASSES = 6
+"""Most fits of a path, each of what the one before made. A third seldom finds more."""
 
 TAG = re.compile(rb"<[^\s/>\0]+")
 ATTRIBUTE = re.compile(rb"""\s+([^\s=>/]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
@@ -121,23 +124,35 @@ def outline_of(path: Path) -> tuple[int, Outline | None]:
 
 
 def fitted(outline: Outline, old: int, path: Path, options: Options) -> tuple[int, str] | None:
-    """The number of segments of a fit and its path data; None if it has no fewer, or is not within the tolerance."""
+    """The number of segments of a fit and its path data; None if it has no fewer, or is not within the tolerance.
+
+    What was fitted is fitted again while that takes segments away. Each time it is compared with the path as it was.
+    """
     from ...fitting.convert import convert
+    from ...outlines.outline_distance import BOUND, chains_of, outline_distance
     from ...writers.svg.path_data import curves_data
 
-    tolerance = options.tolerance_for(path.em) * outline.metrics.units_per_em / path.em
+    em, arrays = outline.metrics.units_per_em, outline.arrays
+    tolerance = options.tolerance_for(path.em) * em / path.em
     precision = options.precision or decimals(tolerance)
     if precision > 9:
         return None
-    try:
-        result = convert(outline, replace(options, tolerance=tolerance, precision=precision))
-    except GlyphsplineError:
-        return None
-    new = sum(len(contour.curve) for contour in result.contours)
-    within = all(contour.measures.within_tolerance for contour in result.contours)
-    if new >= old or not within or len(result.contours) < len(outline.contours):
-        return None
-    return new, curves_data(result.arrays.curves, precision)[0].text
+    options, found = replace(options, tolerance=tolerance, precision=precision), None
+    for _ in range(PASSES):
+        try:
+            result = convert(outline, options)
+        except GlyphsplineError:
+            break
+        curves = result.arrays.curves
+        curves = curves._replace(points=np.round(curves.points, precision))
+        if len(curves.degrees) >= old or curves.num_contours < arrays.num_contours:
+            break
+        row, _ = outline_distance(chains_of(arrays), chains_of(curves), em / 1000, tolerance - outline.snapped)
+        if not row[BOUND] + outline.snapped <= tolerance:
+            break
+        old, found = len(curves.degrees), (len(curves.degrees), curves_data(curves, precision)[0].text)
+        outline = replace(outline, contours=Contours([each.curve.rounded(precision) for each in result.contours]))
+    return found
 
 
 def decimals(tolerance: float) -> int:

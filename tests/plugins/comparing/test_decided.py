@@ -123,7 +123,7 @@ def some_of(font: Path, glyphs: list[str], out: Path) -> Path:
 def converted(font: Path, kind: str, tolerance: float | None, out: Path) -> None:
     """Convert a font into another kind, and compare: nothing that is certified within the tolerance is beyond it."""
     asked = [] if tolerance is None else ["--tolerance", str(tolerance)]
-    call = ["convert", str(font), "--all", "--format", kind, *asked, "--out", str(out), "--jobs", "0"]
+    call = ["refit", str(font), "--format", kind, *asked, "--out", str(out), "--jobs", "0"]
     status = runner.invoke(app, call).exit_code
     missed = {
         entry["glyph"]

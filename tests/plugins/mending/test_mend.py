@@ -281,7 +281,7 @@ def test_a_bare_layer_is_called_glyphspline(tmp_path: Path) -> None:
     (new := tmp_path / "new").mkdir()
     sources(new)  # without the layer, which has what was mended with another tolerance
     run = CliRunner().invoke(
-        app, ["convert", str(new / "Bold.ufo"), "--text", "a", "-o", str(tmp_path / "o"), "-j", "1", "--layer"]
+        app, ["refit", str(new / "Bold.ufo"), "--text", "a", "-o", str(tmp_path / "o"), "-j", "1", "--layer"]
     )
     assert run.exit_code == 0, run.output
     assert "layer glyphspline of Bold.ufo: new outlines of 0 glyphs, G2, as fonts store them" in run.output

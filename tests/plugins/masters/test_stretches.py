@@ -153,7 +153,7 @@ def test_cubics_of_all_masters_become_quadratics_without_a_new_kink(tmp_path: Pa
         data, _ = to_other_outlines(drawn_font(tmp_path, seed), {}, "otf", tolerance=TOLERANCE, rest=TOLERANCE)
         font, out = tmp_path / "cubic.otf", tmp_path / f"out{seed}"
         font.write_bytes(data)
-        call = ["convert", str(font), "--masters", "--all", "--format", "ttf", "--jobs", "0", "--out", str(out)]
+        call = ["refit", str(font), "--masters", "--all", "--format", "ttf", "--jobs", "0", "--out", str(out)]
         assert CliRunner().invoke(app, call).exit_code == 0
         (file,) = out.glob("*.ttf")
         source, result = open_font(font).masters("n"), open_font(file).masters("n")
@@ -277,7 +277,7 @@ def test_arcs_know_what_they_replace() -> None:
 
 def test_what_is_stored_is_as_check_counts_it(tmp_path: Path) -> None:
     font = drawn_font(tmp_path, 2)
-    call = ["convert", str(font.path), "--masters", "--glyphs", "n", "--corners", "sharp", "--effort", "fast"]
+    call = ["refit", str(font.path), "--masters", "--glyphs", "n", "--corners", "sharp", "--effort", "fast"]
     out = tmp_path / "out"
     done = CliRunner().invoke(app, [*call, "--format", "ttf", "--jobs", "0", "--out", str(out)])
     assert done.exit_code == 0
