@@ -67,6 +67,12 @@ def refit(
     if not subset.is_given:
         subset = opt.Subset(all_glyphs=True)
     spec = replace(spec, masters=masters)
+    for name, given, why in (
+        ("location", instance.location, "masters are of the whole design space"),
+        ("scheduler", run.scheduler, "masters are converted on this machine"),
+    ):
+        if masters and given:
+            stop(f"--{name} is not for --masters: {why}")
     with kept(out) as folder, workplace(run.jobs, run.scheduler, spec) as executor:
         call = Conversion(folder, spec, subset, instance, run, out is not None)
         if masters:
@@ -106,12 +112,6 @@ def kept(out: Path | None) -> Iterator[Path]:
 
 def in_all_masters(sources: Sequence[Path], call: Conversion, axis: str | None, executor: Executor) -> bool:
     """Fit a family in all masters at once; whether something was not done."""
-    for name, given, why in (
-        ("location", call.instance.location, "masters are of the whole design space"),
-        ("scheduler", call.run.scheduler, "masters are converted on this machine"),
-    ):
-        if given:
-            stop(f"--{name} is not for --masters: {why}")
     names, summary = service("refit_masters")(sources, call, axis, executor)
     facts = {"font": str(sources[0]), "out": str(call.out), **summary.facts()}
     if call.run.json_log:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...errors import OptionError
 from ...fields import WRITTEN, option
 from ...fitting.options import Options
-from ...runs.spec import RunSpec
+from ...runs.spec import RESULTS, RunSpec
 from ...writers.formats import WholeFormat
 
 if TYPE_CHECKING:
@@ -81,6 +81,12 @@ class RefitSpec(RunSpec):
         from .formats import BACK  # imports fontTools
 
         return (*super().whole, BACK)
+
+    @cached_property
+    def folders(self) -> tuple[str, ...]:
+        """See :attr:`.RunSpec.folders`: fits in all masters are kept whatever is written."""
+        found = super().folders
+        return (*found, RESULTS) if self.masters and RESULTS not in found else found
 
     @property
     def kinds(self) -> list[str]:

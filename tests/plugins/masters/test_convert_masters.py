@@ -25,7 +25,7 @@ from glyphspline.fitting.measures import geometry
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.outlines.outline import Contours
 from glyphspline.plugins.masters.convert_masters import MastersContourResult, changes_at
-from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.job import STORED, redrawn_glyph
 from glyphspline.plugins.masters.new_designspace import write_designspace
 from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
 from glyphspline.plugins.masters.redrawn import Redrawn
@@ -312,7 +312,7 @@ def test_errors_say_what_is_wrong() -> None:
 
 def test_a_stored_result_is_read_back_as_it_was() -> None:
     result = gs.convert_masters(OVALS)
-    again = from_text(to_text(result), gs.MastersResult)
+    again = from_text(to_text(result), gs.MastersResult, STORED)
     np.testing.assert_array_equal(again.contours[0].curve.points, result.contours[0].curve.points)
     assert again.contours[0].inner.dtype == np.bool_
     assert repr(again) == repr(result)
@@ -445,7 +445,7 @@ def manifest_of(out: Path) -> dict[str, Any]:
 def test_a_run_goes_on_with_its_glyphs_and_a_restart_has_none_of_the_old_results(tmp_path: Path) -> None:
     def first_points(name: str) -> FloatArray:
         text = (tmp_path / "results" / f"{name}.json").read_text()
-        return from_text(text, gs.MastersResult).contours[0].curve.points
+        return from_text(text, gs.MastersResult, STORED).contours[0].curve.points
 
     smooth = ("--corners", "smooth")
     assert CliRunner().invoke(app, masters_call(tmp_path, "o", *smooth)).exit_code == 0
