@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from ...errors import OptionError
 from ...fields import WRITTEN, option
 from ...fitting.options import Options
-from ...runs.spec import RESULTS, RunSpec
+from ...runs.spec import POLYGON, RESULTS, RunSpec
 from ...writers.formats import WholeFormat
 
 if TYPE_CHECKING:
@@ -84,9 +84,10 @@ class RefitSpec(RunSpec):
 
     @cached_property
     def folders(self) -> tuple[str, ...]:
-        """See :attr:`.RunSpec.folders`: fits in all masters are kept whatever is written."""
-        found = super().folders
-        return (*found, RESULTS) if self.masters and RESULTS not in found else found
+        """See :attr:`.RunSpec.folders`: fits in all masters are kept whatever is written, and have no polygons."""
+        if not self.masters:
+            return super().folders
+        return (*(name for name in super().folders if name not in (POLYGON, RESULTS)), RESULTS)
 
     @property
     def kinds(self) -> list[str]:
