@@ -49,7 +49,7 @@ CALLS = {
     "fitted": "convert FONT --all --format svg,curvature,gallery -o out",
     "sharp": "convert FONT --all --preset type --format svg,dxf -o out",
     "font": "refit FONT --format ttf,otf,ufo -o out",
-    "masters": "refit FONT --masters --format MASTERS -o out",
+    "masters": "refit FONT --masters --continuity c2 --format MASTERS -o out",
     "check": "check FONT --json --html page.html --loglevel info",
     "diff": "diff FONT SOUND --json --html page.html",
     "text": "text FONT ABCagZ龍好 --corners sharp --out text.svg",
