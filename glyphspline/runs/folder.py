@@ -180,7 +180,7 @@ class Progress:
         return (entry for entry in every if entry.gid in self.known)
 
     def _of_manifest(self) -> Iterator[Entry]:
-        """Glyphs of the manifest; where a record is lost, which may have known others, only those that ``SIZES`` has."""
+        """Glyphs of the manifest; where a record is lost, only those that ``SIZES`` has."""
         known: dict[int, str] = {}
         with suppress(FileNotFoundError):
             line = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")

@@ -1,8 +1,8 @@
 """The record of a run that is not finished: an SQLite file that has the glyphs that are done, and rows of a table.
 
 It is there from the first batch until the manifest is whole. A batch is one transaction: a process that is killed
-leaves all of it or nothing. Each row has a check sum; one that is damaged counts as not there, and of a damaged file
-nothing is trusted.
+leaves all of it or nothing. Check sums tell what a disk has changed: rows of a table count as not there then, and of
+a file that is damaged otherwise nothing is trusted.
 
 On a disk of this machine the file has a write-ahead log, which is synced now and then: a power cut costs the last
 batches alone. Such a log needs memory that all users of the file share, so elsewhere there is a rollback journal.
@@ -106,12 +106,11 @@ class Record:
 
     def entries(self) -> Iterator[Entry]:
         """The glyphs, in glyph index order."""
-        for *values, total in self._db.execute("select * from glyph order by gid"):
-            if total == _sum(*values):
-                yield Entry._make(values)
+        for *values, _ in self._db.execute("select * from glyph order by gid"):
+            yield Entry._make(values)
 
     def batches(self) -> Iterator[tuple[int, str]]:
-        """Number and facts of each batch with rows, in order."""
+        """Number and facts of each batch whose rows are whole, in order."""
         for number, facts, rows, total in self._db.execute("select * from batch order by number"):
             if total == _sum(facts, rows):
                 yield number, facts
@@ -145,11 +144,12 @@ class Record:
         self._db.execute("pragma synchronous = normal")
 
     def _is_sound(self) -> bool:
-        """Whether the tables are there and whole, and each row can be read."""
+        """Whether the tables are there and whole, each batch can be read, and each glyph is as it was written."""
         facts = [self._db.execute(f"pragma {name}").fetchone() for name in ("user_version", "quick_check(1)")]
-        for table in ("batch", "glyph") if facts == [(1,), ("ok",)] else ():
-            deque(self._db.execute(f"select * from {table}"), 0)
-        return facts == [(1,), ("ok",)]
+        if facts != [(1,), ("ok",)]:
+            return False
+        deque(self.batches(), 0)
+        return all(total == _sum(*values) for *values, total in self._db.execute("select * from glyph"))
 
 
 @contextmanager
@@ -184,7 +184,7 @@ def local(folder: Path) -> bool:
     except OSError:
         return False
     kinds = {place.replace("\\040", " "): kind for _, place, kind, *_ in map(str.split, lines)}
-    return kinds[max(filter(folder.resolve().is_relative_to, kinds), key=len)] in LOCAL
+    return kinds.get(max(filter(folder.resolve().is_relative_to, kinds), key=len, default="")) in LOCAL
 
 
 def _files(path: Path) -> list[Path]:
