@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from .. import hooks
 from ..errors import GlyphsplineError, OptionError, require
@@ -115,31 +115,17 @@ class TableFormat(WholeFormat):
         """The rows of some glyphs of a font with this family and style."""
 
     @abstractmethod
-    def kept(self, path: Path, mark: str) -> KeptRows:
-        """The rows that there are already for a table, of a run with that mark."""
+    def held(self, path: Path) -> Container[int]:
+        """Indices of the glyphs that have rows in a table; a file that is no such table has none."""
 
     @abstractmethod
-    def forget(self, folder: Path) -> None:
-        """Remove what is kept in a run's folder for a table that is not whole."""
+    def write(self, path: Path, places: Iterable[tuple[int, int | None]], rows: Callable[[int], bytes]) -> int:
+        """Write a table anew; returns the number of its rows.
 
-
-class KeptRows(Protocol):
-    """The rows of a table in the making.
-
-    Attributes:
-        added: whether there are some that the table does not have.
-    """
-
-    added: bool
-
-    def __contains__(self, gid: object) -> bool:
-        """Whether the rows of a glyph are there."""
-
-    def add(self, rows: bytes) -> None:
-        """Keep the rows of some glyphs."""
-
-    def write(self, gids: Iterable[int]) -> int:
-        """Write the table anew with the rows of these glyphs; returns their number."""
+        Args:
+            places: index of each glyph, ascending, and number of the batch that has its rows; None: those that the
+                table has. rows: the rows of a batch.
+        """
 
 
 def whole_named(name: str) -> WholeFormat | None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -81,10 +80,10 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
         if any(target.exists() and target.samefile(file) for file, target in targets.items()):
             raise OutputError("holds the drawings themselves: --in-place writes into these", font=str(out))
     found: dict[Path, Rewritten | str] = {}
-    quiet = how.quiet or how.json_log
+    jobs = None if how.scheduler else how.processes
     with (
-        workers(how.jobs, kinds=[*kinds_for(options), "distances"], expected=1, scheduler=how.scheduler) as pool,
-        progress(how.quiet, json_log=how.json_log) as observer,
+        workers(jobs, kinds=[*kinds_for(options), "distances"], expected=1, scheduler=how.scheduler) as pool,
+        progress(how.quiet, json_lines=how.as_json) as observer,
     ):
         for part in run(
             DrawingsJob(options), [file.absolute() for file in files], pool, ordered=True, observer=observer
@@ -96,11 +95,9 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
                     write_whole(str(targets[file]), one.data, durable=True)
     if len(files) == 1 and isinstance(only := found[files[0]], str):
         raise GlyphsplineError(only, font=str(files[0]))
-    if how.json_log:
-        say(json.dumps(facts(found)))
     if how.as_json:
         print_json(facts(found))
-    for line in () if quiet else lines(found):
+    for line in () if how.quiet or how.as_json else lines(found):
         say(line)
     return any(isinstance(one, str) or one.unread for one in found.values())
 
