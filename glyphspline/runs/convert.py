@@ -20,7 +20,7 @@ from ..readers import Source
 from ..report import FOLDER as GALLERY
 from ..report.gallery import is_whole, write_index, write_report
 from ..types import Names
-from ..writers.formats import ResultsFormat, format_named
+from ..writers.formats import format_named
 from ..writers.svg.comb import combs
 from .engine import Item, Job, Observer, reason, run, settle
 from .file_names import file_names
@@ -40,6 +40,7 @@ from .result_text import stored
 from .schedule import Place, heads_of, place_of, sources, workers
 from .spec import MAPS, OF_RUNS, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
 from .summary import Summary
+from .whole_formats import ResultsFormat
 
 if TYPE_CHECKING:
     pass

@@ -33,10 +33,10 @@ from ..files import make_folder, reading, remove_partials, replacing, sizes, wri
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from ..types import Head
-from ..writers.formats import TableFormat
 from .engine import Job, Observer, Part, run
 from .record import RECORD, Entry, Record, open_record, remove_record
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
+from .whole_formats import TableFormat
 
 LOCK = ".lock"
 MANIFEST = "manifest.jsonl"

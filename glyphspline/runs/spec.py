@@ -21,17 +21,9 @@ from ..fitting.options import Options
 from ..report import FOLDER as GALLERY
 from ..report import SUFFIX
 from ..types import Names
-from ..writers.formats import (
-    OURS,
-    ResultsFormat,
-    TableFormat,
-    WholeFormat,
-    format_named,
-    format_names,
-    is_format,
-    whole_named,
-)
+from ..writers.formats import OURS, format_named, format_names, is_format
 from ..writers.settings import Maps, Settings
+from .whole_formats import ResultsFormat, TableFormat, WholeFormat, whole_named
 
 if TYPE_CHECKING:
     from ..readers import Source

@@ -6,7 +6,7 @@ from collections.abc import Callable, Container, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...writers.formats import TableFormat
+from ...runs.whole_formats import TableFormat
 
 if TYPE_CHECKING:
     from ...fitting.results import GlyphResult
