@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import argparse
 import os
-import sys
 from importlib import import_module
 from pathlib import Path
 
@@ -18,7 +18,9 @@ def main() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from .measure import markdown, write
 
-    for suite in sys.argv[1:] or SUITES:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("suite", nargs="*", help=f"one of {', '.join(SUITES)}; all of them if none is named")
+    for suite in parser.parse_args().suite or SUITES:
         module, function = SUITES[suite].split(".")
         rows = getattr(import_module(f".{module}", __package__), function)()
         print(markdown(rows), flush=True)
