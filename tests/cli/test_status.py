@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 import glyphspline as gs
 from glyphspline.cli.app import app
-from tests.datasets.test_dataset import broken_glyph
+from tests.plugins.datasets.test_dataset import broken_glyph
 from tests.places import FONTS, GYOSHO
 from tests.readers.test_bulk import with_anchors
 
