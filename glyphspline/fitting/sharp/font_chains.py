@@ -59,17 +59,16 @@ AXES = 1, 1, 0, 1, 1, 1, 0, 0, 0, 0, 0
 """Along which the arrays of sections are joined."""
 
 
+@compiled
 def empty_quads(masters: int, count: int) -> Quads:
-    """Quadratics of one section whose points are not set yet, implied between them."""
+    """Quadratics whose points are not set yet, all nodes implied."""
     nodes = count + 1
-    q = Quads(
+    return Quads(
         np.zeros((masters, count, 2)), np.zeros((masters, nodes, 2)), np.ones(nodes, np.bool_),
         np.zeros((masters, nodes, 2)), np.zeros((masters, nodes, 2)), np.zeros((4, nodes)),
         np.zeros((count, 2), np.bool_), np.zeros(count, np.bool_), np.zeros(count, np.bool_), np.zeros(count, np.int64),
         np.zeros(nodes, np.int64),
     )  # fmt: skip
-    q.implied[0] = q.implied[count] = False
-    return q
 
 
 def joined(sections: Sequence[Quads]) -> Quads:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -43,6 +43,11 @@ class Stored(NamedTuple):
     stays: BoolArray
 
 
+Ends: TypeAlias = tuple[IntArray, BoolArray, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]
+"""What quadratics between two joints meet at their ends: ``first``, ``corner``, ``arriving`` and ``leaving`` of all
+joints, and ``way``, ``turns`` and ``node`` of :class:`Given`."""
+
+
 @dataclass(frozen=True)
 class Given:
     """A contour of m segments in K masters.
@@ -55,8 +60,9 @@ class Given:
         cuts: (m + 1,) the joints at which runs end: corners, kinks, ends of lines. upright: (m + 1,) those at which it
             has a horizontal or vertical extremum, in all masters.
         node: (K, m + 1, 2) where joints are on the grid. off: (m + 1,) how far that is from where they are.
-        stored: what is of it. mixes: (M, K) weights of the masters with which joints are looked at. corners: (V, K)
-            those at the corners of the design space's grid, and outline: (m V, 4, 2) the contour there.
+        ends: what quadratics meet at joints. stored: what is of it.
+        mixes: (M, K) weights of the masters with which joints are looked at. corners: (V, K) those at the corners of
+            the design space's grid, and outline: (m V, 4, 2) the contour there.
     """
 
     cubics: FloatArray
@@ -69,6 +75,7 @@ class Given:
     upright: BoolArray
     node: FloatArray
     off: FloatArray
+    ends: Ends
     stored: Stored
     mixes: FloatArray
     corners: FloatArray
@@ -82,10 +89,16 @@ def read_contour(
     """A contour, its joints, and the tangents at these: at the ends of lines that are met smoothly, the lines'."""
     joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)
     node = np.rint(np.concatenate((stored.node, stored.node[:, :1]), axis=1))
-    x, y = np.moveaxis(node - joints.samples[:, joints.first], 2, 0)
-    off, line = np.sqrt(x * x + y * y).max(axis=0), degrees == 1
-    found = read_joints(cubics, degrees, line, joints, stored.known, node, mixes, tolerance)
-    return Given(cubics, line, joints, *found, node, off, stored, mixes, corners, mixed(corners, cubics))
+    gap, line = node - joints.samples[:, joints.first], degrees == 1
+    off = np.sqrt(gap[..., 0] * gap[..., 0] + gap[..., 1] * gap[..., 1]).max(axis=0)
+    way, turns, level, cuts, upright = read_joints(
+        cubics, degrees, line, joints, stored.known, node, mixes, tolerance
+    )
+    ends = joints.first, joints.corner, joints.arriving, joints.leaving, way, turns, node
+    outline = mixed(corners, cubics)
+    return Given(
+        cubics, line, joints, way, turns, level, cuts, upright, node, off, ends, stored, mixes, corners, outline
+    )
 
 
 @compiled

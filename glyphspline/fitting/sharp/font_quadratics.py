@@ -95,8 +95,10 @@ class Sections:
         if found is not None and MORE[tries] == 0:
             return found
         count += 0 if found is None else MORE[tries]
-        while not begin(q := ended(given, a, b, count, level), given.joints.samples):
+        begun, q = self.begun(a, b, count, level)
+        while not begun:
             count -= 1
+            begun, q = self.begun(a, b, count, level)
         relax(q, given.joints.samples, near / 2, np.inf)
         return q
 
@@ -105,18 +107,24 @@ class Sections:
         given, samples = self.given, self.given.joints.samples
         enough = max(near, 1.05 * float(max(given.off[a], given.off[b])))  # what is on the grid is no nearer
         for count in range(1, most + 1):
-            q = ended(given, a, b, count, level)
-            if not begin(q, samples):
+            begun, q = self.begun(a, b, count, level)
+            if not begun:
                 return count - 1, None
             if relax(q, samples, near / 2, HOPELESS * enough) <= enough:
                 return count, q
         return most, None
 
+    def begun(self, a: int, b: int, count: int, level: bool) -> tuple[bool, Quads]:
+        """So many quadratics, and whether there are samples for them; ``level``: along lines at their ends."""
+        given = self.given
+        before, behind = level and bool(given.level[a]), level and bool(given.level[b])
+        return begin(given.ends, given.joints.samples, a, b, count, before, behind)
+
     def stored(self, a: int, b: int, keep: bool) -> Quads:
         """The quadratics that are stored from joint a to joint b, which may move unless the section is to ``keep``
         them."""
         given, stored, n = self.given, self.given.stored, b - a
-        q = ended(given, a, b, n, False)._replace(
+        q = ended(given.ends, a, b, n, False, False)._replace(
             c=stored.control[:, a:b].copy(), lo=given.joints.first[a : b + 1].copy(),
             fixed=np.full(n, keep), held=np.full(n, keep),
         )  # fmt: skip
@@ -148,14 +156,14 @@ def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
     n, K, stored, samples = j - i, len(given.cubics), given.stored, given.joints.samples
     ring = is_ring(given.cuts, i, j)
     own = n + 1 + np.count_nonzero(~stored.implied[i + 1 : j])
-    sections, best, least, done = Sections(given, tolerance), None, np.inf, False
+    sections, best, count, least, reached, done = Sections(given, tolerance), None, 0, np.inf, np.inf, False
     # Sections end nowhere inside: extrema of all masters at one parameter are more than most have; then at extrema; and
     # where nothing is near enough, at all joints.
     for cut in range(1 if K == 1 else 0, 3):
         stops = given.upright[i : j + 1] & (cut == 1) | (cut == 2)
         stops[0] = stops[n] = True
         ends = (i + np.flatnonzero(stops)).tolist()
-        if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or (best and best[2] <= tolerance))):
+        if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or reached <= tolerance)):
             continue
         tries = np.full(len(ends) - 1, EXPLICIT if cut == 2 else 0)
         for _ in range(0 if stored.known and (n == 1 or stored.stays[i:j].any()) else ATTEMPTS):
@@ -165,19 +173,18 @@ def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
                 relax(q, samples, 0.1 * tolerance, np.inf)
             round_quads(q, samples, tolerance)
             bad, far, kinks = wrong_quads(q, given, i, j, tolerance)
-            again = bool(bad.any()) and next_tries(q, bad, stored.known, tries)
-            rank = kinks + (far / tolerance if far <= tolerance else 1e3 * far)
             if ring:
                 q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
-            points, on = points_of(q.c, q.node, q.implied)
-            size = len(bad) + 1 + np.count_nonzero(~q.implied[1:-1])
-            good = not bad.any() and not (done and best and size >= len(best[1]))
+            again = bool(bad.any()) and next_tries(q, bad, stored.known, tries)
+            rank = kinks + (far / tolerance if far <= tolerance else 1e3 * far)
+            size = len(bad) + 1 + int(np.count_nonzero(~q.implied[1:-1]))
+            good = not bad.any() and not (done and size >= count)
             if good or (not stored.known and rank < least and not done and (cut < 2 or far <= tolerance)):
-                least, best, done = rank, (points, on, far), done or good
+                least, best, reached, done, count = rank, q, far, done or good, size - int(q.implied[0])
             if not again:
                 break
-    if best and (len(best[1]) < own or not stored.known):
-        return best
+    if best is not None and (not stored.known or count < own):
+        return (*points_of(best.c, best.node, best.implied), reached)
     return (*points_of(stored.control[:, i:j], stored.node[:, i : j + 1], stored.implied[i:j]), stored.drift)
 
 
@@ -241,13 +248,13 @@ def fit_contour(
     if k is None:
         return np.empty((K, 0, 2)), np.empty(0, dtype=np.bool_), 0.0
     if k > 0:
-        cubics, degrees = np.roll(cubics, -k, axis=1), np.roll(degrees, -k)
-        node, control = np.roll(stored.node, -k, axis=1), np.roll(stored.control, -k, axis=1)
-        implied, stays = np.roll(stored.implied, -k), np.roll(stored.stays, -k)
-        stored = Stored(stored.known, node, control, implied, stored.drift, stays)
+        order = (np.arange(m) + k) % m
+        cubics, degrees = cubics.take(order, axis=1), degrees[order]
+        node, control = stored.node.take(order, axis=1), stored.control.take(order, axis=1)
+        stored = Stored(stored.known, node, control, stored.implied[order], stored.drift, stored.stays[order])
         given = read_contour(cubics, degrees, settings, tolerance, stored, corners, mixes)
     found, (arriving, leaving) = list[Points](), given.way
-    for i, j in pairwise([0, *(k for k in range(1, m) if given.cuts[k]), m]):
+    for i, j in pairwise([0, *(1 + np.flatnonzero(given.cuts[1:m])).tolist(), m]):
         if given.line[i]:
             away = cubics[:, i, ::3] - given.node[:, i : i + 2]
             far = float(np.sqrt(away[..., 0] * away[..., 0] + away[..., 1] * away[..., 1]).max())

@@ -9,32 +9,42 @@ from ...curves.cubics import length
 from ...types import FloatArray
 from .corners import turn_between
 from .font_chains import LEAST, SLACK, Quads, empty_quads, set_tangents
-from .font_outlines import Given
+from .font_outlines import Ends
 from .run_gates import KINK
 
 
-def ended(given: Given, a: int, b: int, count: int, level: bool) -> Quads:
+@compiled
+def ended(ends: Ends, a: int, b: int, count: int, before: bool, behind: bool) -> Quads:
     """Quadratics from joint a to joint b that are to be placed between their ends; the tangents there, and what is
     beyond.
 
     Args:
-        level: whether they begin and end along lines where they may.
+        ends: of :class:`.font_outlines.Given`. before, behind: whether they begin along the line before them, and end
+            along that behind.
     """
-    joints, q = given.joints, empty_quads(len(given.cubics), count)
-    q.turns[SLACK] = q.turns[LEAST] = KINK
-    for end, k, side in ((0, a, 1), (count, b, 0)):
-        along_line = level and bool(given.level[k])
-        q.T[:, end] = (joints.leaving if along_line != (side == 1) else joints.arriving)[:, k]
-        q.turns[:, end], q.beyond[:, end] = given.turns[side, :, k], given.way[1 - side, :, k]
-        q.node[:, end], q.lo[end] = given.node[:, k], joints.first[k]
-    q.tied[0, 0], q.tied[count - 1, 1] = not joints.corner[a], not joints.corner[b]
+    first, corner, arriving, leaving, way, turns, node = ends
+    q = empty_quads(len(node), count)
+    for s in range(count + 1):
+        q.turns[SLACK, s] = q.turns[LEAST, s] = KINK
+    for end in range(2):
+        s, k, along = (count, b, behind) if end else (0, a, before)
+        for row in range(4):
+            q.turns[row, s] = turns[1 - end, row, k]
+        for w in range(len(node)):
+            tangent = leaving[w, k] if along == (end == 1) else arriving[w, k]
+            for axis in range(2):
+                q.T[w, s, axis], q.beyond[w, s, axis] = tangent[axis], way[end, w, k, axis]
+                q.node[w, s, axis] = node[w, k, axis]
+        q.lo[s], q.implied[s], q.tied[s - end, end] = first[k], False, not corner[k]
     return q
 
 
 @compiled
-def begin(q: Quads, samples: FloatArray) -> bool:
-    """Place quadratics between their ends, along samples (K, N, 2) of the outline; False if these are too few."""
-    count, K = q.c.shape[1], len(samples)
+def begin(
+    ends: Ends, samples: FloatArray, a: int, b: int, count: int, before: bool, behind: bool
+) -> tuple[bool, Quads]:  # fmt: skip
+    """Quadratics to begin with, see :func:`ended`, along samples (K, N, 2) of the outline; False if these are too few."""
+    q, K = ended(ends, a, b, count, before, behind), len(samples)
     first, n = q.lo[0], q.lo[count] - q.lo[0]
     # Quadratics are short where the outline turns, and none is much longer than its neighbours.
     sizes, bends, at, total, turn = np.zeros(n), np.zeros(n + 1), np.zeros(n + 1), 0.0, 0.0
@@ -59,7 +69,7 @@ def begin(q: Quads, samples: FloatArray) -> bool:
             k += 1
         q.lo[s] = first + min(max(k, q.lo[s - 1] - first + 2), n - 2 * (count - s))
         if q.lo[s] <= q.lo[s - 1] + 1:
-            return False
+            return False, q
         set_tangents(q, s, samples)
     for w in range(K):
         c, node, T = q.c[w], q.node[w], q.T[w]
@@ -75,7 +85,7 @@ def begin(q: Quads, samples: FloatArray) -> bool:
                 along = (c[s, 0] - px) * tx + (c[s, 1] - py) * ty
                 along = min(along, -least) if end else max(along, least)
                 c[s, 0], c[s, 1] = px + along * tx, py + along * ty
-    return True
+    return True, q
 
 
 @compiled
