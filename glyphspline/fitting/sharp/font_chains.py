@@ -55,10 +55,6 @@ class Quads(NamedTuple):
     lo: IntArray
 
 
-AXES = 1, 1, 0, 1, 1, 1, 0, 0, 0, 0, 0
-"""Along which the arrays of sections are joined."""
-
-
 @compiled
 def empty_quads(masters: int, count: int) -> Quads:
     """Quadratics whose points are not set yet, all nodes implied."""
@@ -73,15 +69,20 @@ def empty_quads(masters: int, count: int) -> Quads:
 
 def joined(sections: Sequence[Quads]) -> Quads:
     """Sections end to end, copied. Of the node between two the later one counts."""
-    *before, last = (one._replace(owner=np.full_like(one.owner, f)) for f, one in enumerate(sections))
-    inner = [
-        Quads(
-            one.c, one.node[:, :-1], one.implied[:-1], one.T[:, :-1], one.beyond[:, :-1], one.turns[:, :-1], one.tied,
-            one.fixed, one.held, one.owner, one.lo[:-1],
-        )
-        for one in before
-    ]  # fmt: skip
-    return Quads(*(np.concatenate(own, axis) for own, axis in zip(zip(*inner, last, strict=True), AXES, strict=True)))
+    before, last = sections[:-1], sections[-1]
+    return Quads(
+        np.concatenate([one.c for one in sections], axis=1),
+        np.concatenate([*(one.node[:, :-1] for one in before), last.node], axis=1),
+        np.concatenate([*(one.implied[:-1] for one in before), last.implied]),
+        np.concatenate([*(one.T[:, :-1] for one in before), last.T], axis=1),
+        np.concatenate([*(one.beyond[:, :-1] for one in before), last.beyond], axis=1),
+        np.concatenate([*(one.turns[:, :-1] for one in before), last.turns], axis=1),
+        np.concatenate([one.tied for one in sections]),
+        np.concatenate([one.fixed for one in sections]),
+        np.concatenate([one.held for one in sections]),
+        np.arange(len(sections)).repeat([len(one.fixed) for one in sections]),
+        np.concatenate([*(one.lo[:-1] for one in before), last.lo]),
+    )
 
 
 @compiled

@@ -91,9 +91,7 @@ def read_contour(
     node = np.rint(np.concatenate((stored.node, stored.node[:, :1]), axis=1))
     gap, line = node - joints.samples[:, joints.first], degrees == 1
     off = np.sqrt(gap[..., 0] * gap[..., 0] + gap[..., 1] * gap[..., 1]).max(axis=0)
-    way, turns, level, cuts, upright = read_joints(
-        cubics, degrees, line, joints, stored.known, node, mixes, tolerance
-    )
+    way, turns, level, cuts, upright = read_joints(cubics, degrees, line, joints, stored.known, node, mixes, tolerance)
     ends = joints.first, joints.corner, joints.arriving, joints.leaving, way, turns, node
     outline = mixed(corners, cubics)
     return Given(

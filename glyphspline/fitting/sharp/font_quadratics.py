@@ -25,7 +25,7 @@ from ...curves.cubics import directions, length
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import NO_HANDLE
 from .font_chains import Quads, joined, relax
-from .font_gates import distances, wrong_turns
+from .font_gates import distances, wrong_quads
 from .font_grid import EXPLICIT, aim, round_quads
 from .font_outlines import Given, Stored, is_ring, read_contour, set_unit
 from .font_starts import begin, ended
@@ -73,9 +73,8 @@ class Sections:
                 self.made[a, b, n] = self.section(a, b, n)
             parts.append(self.made[a, b, n])
         q = joined(parts)
-        starts = np.flatnonzero(np.diff(q.owner)) + 1
-        stays = np.maximum(tries[1:], tries[:-1]) >= EXPLICIT
-        q.implied[starts] = ~stays | stored.implied[ends[1:-1]]
+        starts = q.owner[1:] > q.owner[:-1]
+        q.implied[1:-1][starts] = (np.maximum(tries[1:], tries[:-1]) < EXPLICIT) | stored.implied[ends[1:-1]]
         return q
 
     def section(self, a: int, b: int, tries: int) -> Quads:
@@ -154,7 +153,7 @@ def next_tries(q: Quads, bad: BoolArray, stored: bool, tries: IntArray) -> bool:
 def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
     """Points of the quadratics from joint i to joint j, without the last: at most as many as are stored."""
     n, K, stored, samples = j - i, len(given.cubics), given.stored, given.joints.samples
-    ring = is_ring(given.cuts, i, j)
+    ring, near = is_ring(given.cuts, i, j), 0.999 * tolerance
     own = n + 1 + np.count_nonzero(~stored.implied[i + 1 : j])
     sections, best, count, least, reached, done = Sections(given, tolerance), None, 0, np.inf, np.inf, False
     # Sections end nowhere inside: extrema of all masters at one parameter are more than most have; then at extrema; and
@@ -172,7 +171,10 @@ def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
             if aim(q, tries, ring):
                 relax(q, samples, 0.1 * tolerance, np.inf)
             round_quads(q, samples, tolerance)
-            bad, far, kinks = wrong_quads(q, given, i, j, tolerance)
+            off = distances(q, given.joints.places, given.outline, given.corners, i, j, near)
+            bad, far, kinks = wrong_quads(
+                q, off, near, given.way, given.line, given.joints.corner, given.mixes, i, j, ring
+            )  # fmt: skip
             if ring:
                 q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
             again = bool(bad.any()) and next_tries(q, bad, stored.known, tries)
@@ -188,21 +190,14 @@ def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
     return (*points_of(stored.control[:, i:j], stored.node[:, i : j + 1], stored.implied[i:j]), stored.drift)
 
 
-def wrong_quads(q: Quads, given: Given, i: int, j: int, tolerance: float) -> tuple[BoolArray, float, int]:
-    """(R,) which quadratics are too far from the source, or turn where they may not; their certified distance; and the
-    number of new kinks."""
-    joints, near, ring = given.joints, 0.999 * tolerance, is_ring(given.cuts, i, j)
-    far = distances(q, joints.places, given.outline, given.corners, i, j, near)
-    bad, kinks = wrong_turns(q, given.way, given.line, joints.corner, given.mixes, i, j, ring)
-    return bad | ~(far <= near), float(far.max()), kinks
-
-
 def points_of(c: FloatArray, node: FloatArray, implied: BoolArray) -> tuple[FloatArray, BoolArray]:
     """What is stored of quadratics: points (K, n, 2), and whether they are on the curve."""
-    (K, R), on = c.shape[:2], np.tile([True, False], c.shape[1])
-    there = ~on
-    there[::2] = ~implied[:R]
-    return np.stack((node[:, :R], c), axis=2).reshape(K, 2 * R, 2)[:, there], on[there]
+    K, R = c.shape[:2]
+    points, there, on = np.empty((K, R, 2, 2)), np.empty((R, 2), np.bool_), np.empty((R, 2), np.bool_)
+    points[:, :, 0], there[:, 0], on[:, 0] = node[:, :R], ~implied[:R], True
+    points[:, :, 1], there[:, 1], on[:, 1] = c, True, False
+    kept = there.reshape(-1)
+    return points.reshape(K, 2 * R, 2)[:, kept], on.reshape(-1)[kept]
 
 
 def evenest_joint(cubics: FloatArray) -> int:
@@ -223,12 +218,18 @@ def evenest_joint(cubics: FloatArray) -> int:
 def first_joint(given: Given) -> int | None:
     """The joint at which what is stored of a contour begins: one at which runs end, or an extremum; None if there is
     none on the grid, and a source to be kept there."""
-    stored = given.stored
-    whole = (stored.node == given.node[:, :-1]).all(axis=(0, 2)) | (not stored.known)
-    for joints in (given.cuts[:-1], given.upright[:-1] & whole):
-        if joints.any():
-            return int(joints.argmax())
-    return None if stored.known else evenest_joint(given.cubics[0])
+    if given.cuts.any():
+        return int(given.cuts.argmax())
+    whole = (given.stored.node == given.node[:, :-1]).all(axis=(0, 2)) | (not given.stored.known)
+    if (whole := given.upright[:-1] & whole).any():
+        return int(whole.argmax())
+    return None if given.stored.known else evenest_joint(given.cubics[0])
+
+
+def far_off(a: FloatArray, b: FloatArray) -> float:
+    """The largest distance of points (…, 2) from others."""
+    gap = a - b
+    return float(np.sqrt((gap * gap).sum(axis=-1)).max())
 
 
 def fit_contour(
@@ -253,23 +254,24 @@ def fit_contour(
         node, control = stored.node.take(order, axis=1), stored.control.take(order, axis=1)
         stored = Stored(stored.known, node, control, stored.implied[order], stored.drift, stored.stays[order])
         given = read_contour(cubics, degrees, settings, tolerance, stored, corners, mixes)
-    found, (arriving, leaving) = list[Points](), given.way
+    found, joints, (arriving, leaving) = list[Points](), given.joints, given.way
     for i, j in pairwise([0, *(1 + np.flatnonzero(given.cuts[1:m])).tolist(), m]):
         if given.line[i]:
-            away = cubics[:, i, ::3] - given.node[:, i : i + 2]
-            far = float(np.sqrt(away[..., 0] * away[..., 0] + away[..., 1] * away[..., 1]).max())
-            found.append((given.node[:, i : i + 1], np.ones(1, np.bool_), far))
+            found.append(
+                (given.node[:, i:j], np.ones(1, np.bool_), far_off(cubics[:, i, ::3], given.node[:, i : j + 1]))
+            )
             continue
         found.append(fit_run(given, i, j, tolerance))
         # What follows meets what is written.
         points = found[-1][0]
         if i == 0 and j < m and not given.line[m - 1]:
             leaving[:, m] = points[:, 1] - points[:, 0]
+            for w in range(K):
+                set_unit(leaving[w, m], joints.leaving[w, m])
         if j < m and not given.line[j]:
             arriving[:, j] = given.node[:, j] - points[:, -1]
-        for w in range(K):
-            set_unit(leaving[w, m], given.joints.leaving[w, m])
-            set_unit(arriving[w, j], given.joints.arriving[w, j])
+            for w in range(K):
+                set_unit(arriving[w, j], joints.arriving[w, j])
     # What is on the grid but for rounding errors is on it: a writer may cut decimals off.
     points, on = np.concatenate([own[0] for own in found], axis=1), np.concatenate([own[1] for own in found])
     whole = np.rint(points)

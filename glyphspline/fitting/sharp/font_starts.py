@@ -43,7 +43,7 @@ def ended(ends: Ends, a: int, b: int, count: int, before: bool, behind: bool) ->
 def begin(
     ends: Ends, samples: FloatArray, a: int, b: int, count: int, before: bool, behind: bool
 ) -> tuple[bool, Quads]:  # fmt: skip
-    """Quadratics to begin with, see :func:`ended`, along samples (K, N, 2) of the outline; False if these are too few."""
+    """Quadratics to begin with, see :func:`ended`, along samples (K, N, 2) of the outline; False: these are too few."""
     q, K = ended(ends, a, b, count, before, behind), len(samples)
     first, n = q.lo[0], q.lo[count] - q.lo[0]
     # Quadratics are short where the outline turns, and none is much longer than its neighbours.
