@@ -23,19 +23,12 @@ MOST_ARRAYS = 25
 """Arrays that a compiled function takes, those in nested tuples too: each is seven numbers and more to LLVM, which
 passes all of them one by one."""
 
-MANY = {
-    f"glyphspline.plugins.fonts.fit.quadratics.{name}"
-    for name in ("find_fewest", "wrong_quads", "set_ends", "fewest", "begin", "assembled", "fit_run")
-}
-"""Functions that still take more."""
-
 MOST_SECONDS = 5.0
 """Processor time of compiling one function, without what it calls, where ten million turns of ``s += i`` take 1.1 s."""
 
 LONG = {
     "glyphspline.fitting.sharp.vertex_steps.move_vertices": 9.0,
-    "glyphspline.curves.crossings.glyph_meetings": 9.0,
-    "glyphspline.plugins.fonts.fit.fit.fit_contours": 30.0,
+    "glyphspline.fitting.sharp.font_fit.fit_contours": 30.0,
 }
 """Functions that still take longer, and how long at most."""
 
@@ -73,7 +66,7 @@ def test_compiled_functions_take_few_arrays() -> None:
         counts[name] = sum(map(arrays_in, own.values()))
     assert len(counts) > 200
     assert counts["glyphspline.fitting.sharp.cutting.simplest"] == 3
-    assert {name for name, count in counts.items() if count > MOST_ARRAYS} == MANY
+    assert not {name for name, count in counts.items() if count > MOST_ARRAYS}
 
 
 EVENTS = """

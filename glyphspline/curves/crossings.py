@@ -18,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..arrays import ascending, grown, put
+from ..arrays import grown, put
 from ..compiled import compiled, inlined
 from ..types import BoolArray, FloatArray, IntArray
 from .contacts import all_crossings
@@ -74,60 +74,76 @@ def meetings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[F
         (K, 6): the two contours, and the places where contact begins and ends, by the first of them: (c, d, a, b, a',
         b'). Of a crossing the last two are NaN. And (G,) whether all of a glyph's were looked for.
     """
-    every = [glyph_meetings(cubics, offsets, first, last) for first, last in pairwise(glyphs.tolist())]
+    every = []
+    for first, last in pairwise(glyphs.tolist()):
+        pieces, boxes, flat = pieces_of(cubics, offsets, first, last)
+        order = np.argsort(boxes[:, 0], kind="stable")
+        every.append(glyph_meetings(cubics, offsets, pieces, boxes, order, flat))
     complete = np.array([whole for _, whole in every], dtype=np.bool_)
     return np.concatenate([np.empty((0, 6)), *(found for found, whole in every if whole)]), complete
 
 
 @compiled
-def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int) -> tuple[FloatArray, bool]:
-    """The meetings of the contours from ``first`` up to ``last``; see :func:`meetings`."""
-    found, count = np.empty((16, 6)), 0
-    most = offsets[last] - offsets[first]
-    piece, contour, after = np.empty(most, np.int64), np.empty(most, np.int64), np.empty(most, np.int64)
-    n = 0
+def pieces_of(cubics: FloatArray, offsets: IntArray, first: int, last: int) -> tuple[IntArray, FloatArray, float]:
+    """The segments with a length of the contours from ``first`` up to ``last``.
+
+    Returns:
+        (n, 4): segment, contour, the piece after it, halvings until it is as good as its chord. (n, 4) boxes: left,
+        right, low, high. And by how much chords may differ from curves.
+    """
+    n, most = 0, offsets[last] - offsets[first]
+    pieces, boxes = np.empty((most, 4), np.int64), np.empty((most, 4))
     for c in range(first, last):
         begin = n
         for s in range(offsets[c], offsets[c + 1]):
             if legs(cubics[s]) > 0.0:  # rounding may leave pieces of no length
-                piece[n], contour[n], after[n] = s, c, n + 1
+                pieces[n, 0], pieces[n, 1], pieces[n, 2], pieces[n, 3] = s, c, n + 1, 0
                 n += 1
         if n > begin:
-            after[n - 1] = begin
-    left, right, low, high, deep = np.empty(n), np.empty(n), np.empty(n), np.empty(n), np.empty(n, np.int64)
+            pieces[n - 1, 2] = begin
     flat = FLAT * extent(cubics[offsets[first] : offsets[last]])
-    finest = flat * 0.25**FINER
     for i in range(n):
-        b = cubics[piece[i]]
-        left[i] = right[i] = b[0, 0]
-        low[i] = high[i] = b[0, 1]
-        for k in range(1, 4):
-            left[i], right[i] = min(left[i], b[k, 0]), max(right[i], b[k, 0])
-            low[i], high[i] = min(low[i], b[k, 1]), max(high[i], b[k, 1])
-        deep[i], error = 0, chord_error(b)
-        while error > flat and deep[i] < DEEPEST:
-            deep[i] += 1
+        b = cubics[pieces[i, 0]]
+        for axis in range(2):
+            low = high = b[0, axis]
+            for k in range(1, 4):
+                low, high = min(low, b[k, axis]), max(high, b[k, axis])
+            boxes[i, 2 * axis], boxes[i, 2 * axis + 1] = low, high
+        error = chord_error(b)
+        while error > flat and pieces[i, 3] < DEEPEST:
+            pieces[i, 3] += 1
             error /= 4
+    return pieces[:n], boxes[:n], flat
+
+
+@compiled
+def glyph_meetings(
+    cubics: FloatArray, offsets: IntArray, pieces: IntArray, boxes: FloatArray, order: IntArray, flat: float
+) -> tuple[FloatArray, bool]:  # fmt: skip
+    """The meetings of a glyph; see :func:`meetings`.
+
+    Args:
+        pieces, boxes, flat: of :func:`pieces_of`. order: of the pieces, by their left.
+    """
+    found, count, n, finest = np.empty((16, 6)), 0, len(pieces), flat * 0.25**FINER
     A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
     marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
-    order, steps = ascending(left), 0
-    coarse, floor = -1, 0  # the row of a pair that touches and is halved on, and its place on the stack
+    steps, coarse, floor = 0, -1, 0  # the row of a pair that touches and is halved on, and its place on the stack
     for oi in range(n):
         i = order[oi]
         for oj in range(oi, n):
             j = order[oj]
-            if left[j] > right[i]:
+            if boxes[j, 0] > boxes[i, 1]:
                 break
             steps += 1
-            if low[j] > high[i] or high[j] < low[i]:
+            if boxes[j, 2] > boxes[i, 3] or boxes[j, 3] < boxes[i, 2]:
                 continue
             s, t = min(i, j), max(i, j)  # the order of the contours
-            put(cubics[piece[s]], A[0])
-            put(cubics[piece[t]], B[0])
+            put(cubics[pieces[s, 0]], A[0])
+            put(cubics[pieces[t, 0]], B[0])
             marks[0, 0], marks[0, 1] = 0, 0
-            marks[0, 2] = (
-                AFTER * (after[s] == t) + BEFORE * (after[t] == s) if s != t else SELF + AFTER * (after[s] == s)
-            )
+            after, before = pieces[s, 2] == t, pieces[t, 2] == s
+            marks[0, 2] = AFTER * after + BEFORE * before if s != t else SELF + AFTER * after
             begins[0, 0], begins[0, 1] = 0.0, 0.0
             top = 0
             while top >= 0 or coarse >= 0:
@@ -135,7 +151,10 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                     return found[:0], False
                 steps += 1
                 if coarse >= 0 and top < floor:  # all finer pairs are done: they take the place of the coarse one
-                    if count - coarse <= MOST_FINER + 1 or np.isnan(found[coarse + 1 : count, 4]).any():
+                    crossed = count - coarse <= MOST_FINER + 1
+                    for r in range(coarse + 1, count):
+                        crossed = crossed or np.isnan(found[r, 4])
+                    if crossed:
                         put(found[coarse + 1 : count], found[coarse : count - 1])
                         count -= 1
                     else:
@@ -147,7 +166,7 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                     top -= 1
                     continue
                 deepest = DEEPER if kind else FINER if coarse >= 0 else 0
-                ended, other_ended = marks[top, 0] >= deep[s] + deepest, marks[top, 1] >= deep[t] + deepest
+                ended, other_ended = marks[top, 0] >= pieces[s, 3] + deepest, marks[top, 1] >= pieces[t, 3] + deepest
                 same = back = not kind  # whether both pieces have the same Bézier points, or in reverse
                 for k in range(0 if kind else 4):
                     same = same and A[top, k, 0] == B[top, k, 0] and A[top, k, 1] == B[top, k, 1]
@@ -160,16 +179,19 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                         x, x_end, y = 0.0, 1.0, 0.0 if same else 1.0
                         y_end = 1.0 - y
                     elif kind == 0:
-                        straight = is_straight(A[top], finest) and is_straight(B[top], finest)
-                        finer = FINER if straight else max(min(marks[top, 0] - deep[s], marks[top, 1] - deep[t]), 0)
+                        straight = True
+                        for one_of in (A, B):
+                            straight = straight and is_straight(one_of[top], finest)
+                        finer = min(marks[top, 0] - pieces[s, 3], marks[top, 1] - pieces[t, 3])
+                        finer = FINER if straight else max(finer, 0)
                         x, y, x_end, y_end = meeting(A[top], B[top], 4.0 * flat * 0.25**finer)
                     if x >= 0.0:
                         found = grown(found, count + 1)
-                        found[count, 0], found[count, 1] = contour[s], contour[t]
+                        found[count, 0], found[count, 1] = pieces[s, 1], pieces[t, 1]
                         for k in range(2):
                             which, one, other = (s, x, x_end) if k == 0 else (t, y, y_end)
                             cubic, share = A[top] if k == 0 else B[top], 0.5 ** marks[top, k]
-                            begin = piece[which] - offsets[contour[which]] + begins[top, k]
+                            begin = pieces[which, 0] - offsets[pieces[which, 1]] + begins[top, k]
                             found[count, 2 + k] = begin + share * parameter_at(cubic, one)
                             found[count, 4 + k] = begin + share * parameter_at(cubic, other)
                         count += 1
@@ -177,10 +199,9 @@ def glyph_meetings(cubics: FloatArray, offsets: IntArray, first: int, last: int)
                         coarse, floor = count - 1, top
                     else:
                         top -= 1
-                elif other_ended or (not ended and legs(A[top]) >= legs(B[top])):
-                    top = halve(A, B, marks, begins, top, 0)
                 else:
-                    top = halve(A, B, marks, begins, top, 1)
+                    first = other_ended or (not ended and legs(A[top]) >= legs(B[top]))
+                    top = halve(A, B, marks, begins, top, 0 if first else 1)
     return found[:count], True
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,11 @@ SLIP = 0.01
 parameter in these."""
 
 
+SLACK, LEAST, OWN, REACH = range(4)
+"""Rows of ``Quads.turns``: the largest turn that is no new kink; the smallest in any mix; the largest that the source
+has, and how long a leg beside it may be."""
+
+
 class Quads(NamedTuple):
     """The R quadratics of a run or section, in K masters.
 
@@ -31,8 +37,7 @@ class Quads(NamedTuple):
         c: (K, R, 2) control points. node: (K, R + 1, 2) where they meet. implied: (R + 1,) midway between control
             points.
         T: (K, R + 1, 2) unit tangents at nodes. tied: (R, 2) whether a control point is on that of its start, or end.
-        beyond: (K, R + 1, 2) where tied, what is beyond the node.
-        slack, least, own, reach: (R + 1,) turns from it as in :class:`.fit.outlines.Given`.
+        beyond: (K, R + 1, 2) where tied, what is beyond the node. turns: (4, R + 1) from it.
         fixed: (R,) control points that do not move. held: (R,) quadratics of the source.
         owner: (R,) their sections. lo: (R + 1,) samples at which they meet.
     """
@@ -42,10 +47,7 @@ class Quads(NamedTuple):
     implied: BoolArray
     T: FloatArray
     beyond: FloatArray
-    slack: FloatArray
-    least: FloatArray
-    own: FloatArray
-    reach: FloatArray
+    turns: FloatArray
     tied: BoolArray
     fixed: BoolArray
     held: BoolArray
@@ -54,13 +56,33 @@ class Quads(NamedTuple):
 
 
 @compiled
-def part(q: Quads, a: int, b: int) -> Quads:
-    """Quadratics a to b - 1 of some."""
-    n = b + 1
+def empty_quads(masters: int, count: int) -> Quads:
+    """Quadratics whose points are not set yet, all nodes implied."""
+    nodes = count + 1
     return Quads(
-        q.c[:, a:b], q.node[:, a:n], q.implied[a:n], q.T[:, a:n], q.beyond[:, a:n], q.slack[a:n], q.least[a:n],
-        q.own[a:n], q.reach[a:n], q.tied[a:b], q.fixed[a:b], q.held[a:b], q.owner[a:b], q.lo[a:n],
+        np.zeros((masters, count, 2)), np.zeros((masters, nodes, 2)), np.ones(nodes, np.bool_),
+        np.zeros((masters, nodes, 2)), np.zeros((masters, nodes, 2)), np.zeros((4, nodes)),
+        np.zeros((count, 2), np.bool_), np.zeros(count, np.bool_), np.zeros(count, np.bool_), np.zeros(count, np.int64),
+        np.zeros(nodes, np.int64),
     )  # fmt: skip
+
+
+def joined(sections: Sequence[Quads]) -> Quads:
+    """Sections end to end, copied. Of the node between two the later one counts."""
+    before, last = sections[:-1], sections[-1]
+    return Quads(
+        np.concatenate([one.c for one in sections], axis=1),
+        np.concatenate([*(one.node[:, :-1] for one in before), last.node], axis=1),
+        np.concatenate([*(one.implied[:-1] for one in before), last.implied]),
+        np.concatenate([*(one.T[:, :-1] for one in before), last.T], axis=1),
+        np.concatenate([*(one.beyond[:, :-1] for one in before), last.beyond], axis=1),
+        np.concatenate([*(one.turns[:, :-1] for one in before), last.turns], axis=1),
+        np.concatenate([one.tied for one in sections]),
+        np.concatenate([one.fixed for one in sections]),
+        np.concatenate([one.held for one in sections]),
+        np.arange(len(sections)).repeat([len(one.fixed) for one in sections]),
+        np.concatenate([*(one.lo[:-1] for one in before), last.lo]),
+    )
 
 
 @compiled
@@ -110,6 +132,7 @@ def relax(q: Quads, samples: FloatArray, enough: float, hopeless: float) -> floa
         np.empty((K, 3, 2)), np.empty((K, 4, 2)), np.empty((4, 2, 6)), np.empty((6, 7)),
     )  # fmt: skip
     A, g, first, x, e, weight, c, p, J, own = borrowed(work)
+    set_nodes(q)
     for k in range(n):
         first[k] = max(0, 2 * (k // 2 - 2))
     for s in range(R):

@@ -9,7 +9,18 @@ from ....curves.cubics import length, square
 from ....fitting.sharp.corners import turn_between
 from ....fitting.sharp.nearness import add_samples, shared_feet, squares
 from ....types import FloatArray, IntArray
-from .chains import SLIP, Quads, ahead, as_cubics, set_moves, set_nodes
+from .chains import (
+    LEAST,
+    OWN,
+    REACH,
+    SLACK,
+    SLIP,
+    Quads,
+    ahead,
+    as_cubics,
+    set_moves,
+    set_nodes,
+)
 from .gates import CORNER, KINK
 
 SWEEPS = 4
@@ -34,25 +45,25 @@ def aim(q: Quads, tries: IntArray, ring: bool) -> bool:
         ring: whether the last node is the first again: it becomes implied.
     """
     aimed, K, R = False, len(q.c), q.c.shape[1]
-    wanted, best = np.empty(K), np.empty((K, 2))
+    wanted = np.empty(K)
     for s in range(R):
         both = q.tied[s, 0] and q.tied[s, 1]
         for end in range(2):
             if q.fixed[s] or not q.tied[s, end]:
                 continue
-            level = not both
-            for axis in range(2):
-                level = level and not (q.T[:, s + end, axis] == 0.0).all()
-            if not both and not level:
+            flat, upright = True, True
+            for w in range(K):
+                flat, upright = flat and q.T[w, s + end, 1] == 0.0, upright and q.T[w, s + end, 0] == 0.0
+            if not both and (flat or upright):
                 continue
             price = 0.5 if tries[q.owner[s]] >= LOOSE else 100.0
             set_lengths(q, s, end, tries[q.owner[s]] % 2 == 1 and not ring, wanted)
             for w in range(K):
-                best[w] = aimed_at(q, w, s, end, wanted[w], price)
-            if ring and 0 < s == R - 1 and q.fixed[0]:
-                best[:] = 2 * q.node[:, R] - q.c[:, 0]
-            q.c[:, s], q.fixed[s], aimed = best, True, True
-    set_nodes(q)
+                x, y = aimed_at(q, w, s, end, wanted[w], price)
+                if ring and 0 < s == R - 1 and q.fixed[0]:
+                    x, y = 2 * q.node[w, R, 0] - q.c[w, 0, 0], 2 * q.node[w, R, 1] - q.c[w, 0, 1]
+                q.c[w, s, 0], q.c[w, s, 1] = x, y
+            q.fixed[s] = aimed = True
     return aimed
 
 
@@ -71,13 +82,13 @@ def set_lengths(q: Quads, s: int, end: int, alike: bool, wanted: FloatArray) -> 
 
 
 @compiled
-def aimed_at(q: Quads, w: int, s: int, end: int, wanted: float, price: float) -> FloatArray:
-    """The place (2,) on the grid for the control point of quadratic s in master w, in the direction of its tangent."""
+def aimed_at(q: Quads, w: int, s: int, end: int, wanted: float, price: float) -> tuple[float, float]:
+    """The place on the grid for the control point of quadratic s in master w, in the direction of its tangent."""
     both, sign, (tx, ty), p = q.tied[s, 0] and q.tied[s, 1], 1.0 - 2.0 * end, q.T[w, s + end], q.node[w, s + end]
     tx, ty, c = sign * tx, sign * ty, q.c[w, s]
     steep = abs(ty) > abs(tx)
     main, other = (ty, tx) if steep else (tx, ty)
-    least, best = np.inf, c.copy()
+    least, best_x, best_y = np.inf, c[0], c[1]
     for code in range(25 if both else int(2 * wanted) + 12):
         if both:
             x, y = np.rint(c[0]) - p[0] + code % 5 - 2, np.rint(c[1]) - p[1] + code // 5 - 2
@@ -90,8 +101,8 @@ def aimed_at(q: Quads, w: int, s: int, end: int, wanted: float, price: float) ->
             r = q.node[w, s + 1]
             cost += off_tangent(q, w, s + 1, r[0] - p[0] - x, r[1] - p[1] - y, price)
         if cost < least:
-            least, best[0], best[1] = cost, p[0] + x, p[1] + y
-    return best
+            least, best_x, best_y = cost, p[0] + x, p[1] + y
+    return best_x, best_y
 
 
 @compiled
@@ -102,8 +113,8 @@ def is_kink(q: Quads, s: int, turn: float, leg: float) -> bool:
         leg: how long the leg is that turns. Where rounding has turned the source, it may turn as that does, beside no
             longer a leg.
     """
-    sources = turn <= q.own[s] + 1e-9 and leg <= q.reach[s] + 1e-6
-    return (turn > q.slack[s] + 1e-9 and not sources) or turn < CORNER < q.least[s]
+    sources = turn <= q.turns[OWN, s] + 1e-9 and leg <= q.turns[REACH, s] + 1e-6
+    return (turn > q.turns[SLACK, s] + 1e-9 and not sources) or turn < CORNER < q.turns[LEAST, s]
 
 
 @compiled
@@ -122,9 +133,9 @@ def round_quads(q: Quads, samples: FloatArray, tolerance: float) -> None:
     stay so."""
     K, R = len(q.c), q.c.shape[1]
     # A row before the first control point, and one behind the last.
-    points, own, rest = np.zeros((K, R + 2, 2)), np.zeros((K, R, 6, 7)), np.zeros((K, R))
-    points[:, 1 : R + 1] = q.c
-    exact, c, p, J = points.copy(), np.empty((K, 3, 2)), np.empty((K, 4, 2)), np.empty((4, 2, 6))
+    points, exact = np.zeros((K, R + 2, 2)), np.zeros((K, R + 2, 2))
+    own, rest = np.zeros((K, R, 6, 7)), np.zeros((K, R))
+    c, p, J = np.empty((K, 3, 2)), np.empty((K, 4, 2)), np.empty((4, 2, 6))
     for s in range(R):
         if not q.held[s]:
             a, n = q.lo[s], q.lo[s + 1] + 1 - q.lo[s]
@@ -136,8 +147,10 @@ def round_quads(q: Quads, samples: FloatArray, tolerance: float) -> None:
                 rest[w, s] = add_samples(
                     p[w], c[w], Q[w], x, np.ones(n), J, tolerance, own[w, s], SLIP if K > 1 else 0.0
                 )
-        if not q.fixed[s]:
-            points[:, s + 1] = np.rint(points[:, s + 1])
+        for w in range(K):
+            for axis in range(2):
+                at = q.c[w, s, axis]
+                exact[w, s + 1, axis], points[w, s + 1, axis] = at, at if q.fixed[s] else np.rint(at)
     for w in range(K):
         for _ in range(SWEEPS):
             changed = False
@@ -145,7 +158,9 @@ def round_quads(q: Quads, samples: FloatArray, tolerance: float) -> None:
                 changed = (not q.fixed[s] and moved_on_grid(q, w, s, points[w], exact[w], own[w], rest[w])) or changed
             if not changed:
                 break
-    q.c[:] = points[:, 1 : R + 1]
+        for s in range(R):
+            for axis in range(2):
+                q.c[w, s, axis] = points[w, s + 1, axis]
     set_nodes(q)
 
 
