@@ -66,12 +66,13 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     return reader.opened(path, location)
 
 
-def reader_of(path: Path) -> Reader | None:
+def reader_of(path: str | Path) -> Reader | None:
     """How a path is read; None: as a font file, which it is, or nothing else that is known.
 
     Raises:
         FontError: it cannot be read, or it is of a kind that nothing here reads.
     """
+    path = _place(path)
     head = b"" if path.is_dir() else beginning(path)
     if head[:4] in FORMATS:
         return None
@@ -111,7 +112,7 @@ def is_font(path: str | Path) -> bool:
     Raises:
         FontError: it cannot be read.
     """
-    return reader_of(_place(path)) is None
+    return reader_of(path) is None
 
 
 def is_xml(head: bytes) -> bool:

@@ -71,14 +71,8 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
         raise OptionError(
             "drawings have the fewest segments with --continuity g2 and --corners sharp; convert draws others"
         )
-    files = [file for path in paths for file in (sorted(path.glob("*.svg")) if path.is_dir() else [path])]
-    targets = {file: file if out is None else out / file.name for file in files}
-    if len(set(targets.values())) < len(files):
-        raise OptionError("--out takes no two drawings of one name")
-    if out is not None:
-        make_folder(out)
-        if any(target.exists() and target.samefile(file) for file, target in targets.items()):
-            raise OutputError("holds the drawings themselves: --in-place writes into these", font=str(out))
+    targets = targets_of([file for path in paths for file in files_in(path)], out)
+    files = [*targets]
     found: dict[Path, Rewritten | str] = {}
     jobs = None if how.scheduler else how.processes
     with (
@@ -100,6 +94,24 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
     for line in () if how.quiet or how.as_json else lines(found):
         say(line)
     return any(isinstance(one, str) or one.unread for one in found.values())
+
+
+def files_in(path: Path) -> list[Path]:
+    """The drawings of a folder, or one alone."""
+    return sorted(path.glob("*.svg")) if path.is_dir() else [path]
+
+
+def targets_of(files: Sequence[Path], out: Path | None) -> dict[Path, Path]:
+    """Where drawings are written: by their names into a folder, or None for themselves."""
+    if out is None:
+        return {file: file for file in files}
+    targets = {file: out / file.name for file in files}
+    if len({*targets.values()}) < len(files):
+        raise OptionError("--out takes no two drawings of one name")
+    make_folder(out)
+    if any(target.exists() and target.samefile(file) for file, target in targets.items()):
+        raise OutputError("holds the drawings themselves: --in-place writes into these", font=str(out))
+    return targets
 
 
 def lines(found: Mapping[Path, Rewritten | str]) -> Iterator[str]:

@@ -310,8 +310,9 @@ def test_a_glyph_of_a_cff_table_that_cannot_be_drawn_costs_only_itself(
 
 
 def test_points_that_rounding_puts_together_are_stored_once() -> None:
-    small = polygon_contour([(0, 0), (40, 0), (40.2, 0.1), (40.4, 0.3), (40, 30), (0.3, 30), (0, 29.8), (0, 0.4)])
-    glyph = cut_alone([small, polygon_contour([(9.6, 9.6), (10.4, 9.6), (10, 10.4)])], 0.3, "dots")
+    large = [(0, 0), (40, 0), (40.2, 0.1), (40.4, 0.3), (40, 30), (0.3, 30), (0, 29.8), (0, 0.4)]
+    small = [(9.6, 9.6), (10.4, 9.6), (10, 10.4)]
+    glyph = cut_alone([polygon_contour(np.array(each)) for each in (large, small)], 0.3, "dots")
     assert [*glyph.coordinates] == [(0, 0), (40, 0), (40, 30), (0, 30), (10, 10)]
     assert glyph.endPtsOfContours == [3, 4]
 

@@ -19,10 +19,10 @@ from glyphspline.plugins.fonts import ufo_folder
 from glyphspline.plugins.fonts.back import nodes
 from glyphspline.plugins.fonts.fit import points as font_points
 from glyphspline.plugins.fonts.spec import RefitSpec
-from glyphspline.plugins.fonts.tables import font_file, font_glyphs
+from glyphspline.plugins.fonts.tables import font_file, font_glyphs, master_deltas, variable_glyf
 from glyphspline.plugins.fonts.tables.font_file import FontSummary, to_font
 from glyphspline.plugins.fonts.tables.font_glyphs import Flavour
-from glyphspline.plugins.masters import variable_font
+from glyphspline.plugins.masters import quadratic_glyphs, variable_font
 from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.readers import Source, open_font
 from glyphspline.readers.ufo import Ufo
@@ -37,7 +37,6 @@ from tests.variable_fonts import quadratic
 from tests.variable_fonts import variable_font as built
 
 G2, C2, SMOOTH = gs.Options(continuity="g2"), gs.Options(), gs.Options(corners="smooth")
-GLYF = "glyphspline.plugins.fonts.tables.variable_glyf"
 FAR = 7.0
 """Units by which what is written is wrong here."""
 
@@ -169,7 +168,7 @@ def assert_beyond(summary: FontSummary) -> None:
 
 def test_glyphs_of_masters_that_are_written_wrong_are_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     with monkeypatch.context() as patch:
-        patch.setattr(f"{GLYF}.simple_glyph", moved(font_glyphs.simple_glyph))
+        patch.setattr(quadratic_glyphs, "simple_glyph", moved(font_glyphs.simple_glyph))
         assert_outside(open_font(FONTS / "variable.ttf"), "ttf", tmp_path / "default")
     with monkeypatch.context() as patch:
 
@@ -178,10 +177,10 @@ def test_glyphs_of_masters_that_are_written_wrong_are_found(monkeypatch: pytest.
                 each.coordinates = [xy and (xy[0] + int(FAR), xy[1]) for xy in each.coordinates[:-4]] + [None] * 4
             return compileTupleVariationStore(variations, *rest)
 
-        patch.setattr(f"{GLYF}.compileTupleVariationStore", wrong)
+        patch.setattr(variable_glyf, "compileTupleVariationStore", wrong)
         assert_outside(open_font(FONTS / "variable.ttf"), "ttf", tmp_path / "deltas")
     with monkeypatch.context() as patch:
-        blend = variable_font.blend
+        blend = master_deltas.blend
         patch.setattr(variable_font, "blend", lambda column: blend([*column[:-1], column[-1] + FAR]))
         assert_outside(open_font(FONTS / "variable-cff2.otf"), "otf", tmp_path / "blends")
 
