@@ -68,6 +68,7 @@ SERVICES: dict[str, str] = {
     "no_joints": "numbers of no joints along an axis: a :class:`.DesignAxis`",
     "notebook": "display in notebooks: no arguments",
     "on_axes": "checks of glyphs along axes: see :func:`.masters.on_axes.on_axes`",
+    "refit_drawings": "paths of drawings rewritten: with options, a folder or None for themselves, options of the run",
     "refit_masters": "fits of a family in all masters: paths, the call of ``refit``, an axis or None, an executor",
     "text_document": "a text as SVG: a layout and the results of its distinct glyphs",
     "turns_figure": "the diagram of turns along axes: a source, a report, a format",

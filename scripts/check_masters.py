@@ -20,9 +20,9 @@ from glyphspline.curves.bezier import as_cubic, derivative_points, signed_curvat
 from glyphspline.curves.cubics import turns
 from glyphspline.curves.fairness import TURN, curvatures, extrema_of
 from glyphspline.fitting.measures import CORNER, extrema_floor
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
 from glyphspline.plugins.masters.convert_masters import MastersResult, convert_masters
 from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.types import BoolArray, FloatArray
 

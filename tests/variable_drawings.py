@@ -15,7 +15,7 @@ from scipy.interpolate import BSpline, make_interp_spline, make_lsq_spline
 from glyphspline.curves.bezier import evaluate
 from glyphspline.curves.cubics import turns
 from glyphspline.outlines.masters import MasterContour, Masters
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
+from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.types import BoolArray, FloatArray
 
 CORNER = np.radians(12)

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Conversion:
-    """A call of ``convert``.
+    """A call of ``convert`` or ``refit``.
 
     Attributes:
         out: folder. spec: how glyphs are converted, and what is written. subset: which glyphs. instance: of the font.
-        run: how the command runs, and what it prints.
+        run: how the command runs, and what it prints. stays: whether the folder is there when the command has ended.
     """
 
     out: Path
@@ -37,6 +37,7 @@ class Conversion:
     subset: opt.Subset
     instance: opt.Instance
     run: opt.RunOptions
+    stays: bool = True
 
 
 @grouped
@@ -171,8 +172,8 @@ def run_face(
             source, names, out, call.spec, executor=executor, restart=not run.resume, observer=observer
         )
     if not (run.quiet or run.as_json):
-        seen = f"open {out / 'index.html'}" if GALLERY in call.spec.formats else f"written to {out}"
-        say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}; {seen}")
+        seen = f"; open {out / 'index.html'}" if GALLERY in call.spec.formats else f"; written to {out}"
+        say(f"{name}: {summary.headline()}" if name else f"{summary.headline()}{seen if call.stays else ''}")
         for line in summary.lines():
             say(f"  {line}" if name else line)
     return summary

@@ -139,6 +139,9 @@ def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:
     known = {one.name: one for one in options_of(kind)}
     usual = kind()
     found = {one.name: value for one in fields(kind) if (value := getattr(base, one.name)) != getattr(usual, one.name)}
+    for name in [*found]:  # not what follows from others: it is not given
+        rest = {key: value for key, value in found.items() if key != name}
+        found = rest if kind(**rest) == base else found
     if kind is Options:
         preset = PRESETS.get(given.get("preset", ""), {})
         found |= preset

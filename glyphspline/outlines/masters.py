@@ -161,6 +161,11 @@ class Masters:
         peaks: FloatArray = np.vstack([np.zeros((1, len(self.axes))), self.regions[:, :, 1]])
         return peaks
 
+    @property
+    def stored_peaks(self) -> list[tuple[float, ...]]:
+        """The locations of the masters, rounded as fonts store them."""
+        return [tuple(float(x) for x in peak) for peak in np.round(self.peaks * 16384) / 16384 + 0.0]
+
     def normalised(self, location: Mapping[str, float]) -> FloatArray:
         """(A,) the normalised location of user-space values; axes that are not given are at their default.
 

@@ -33,11 +33,13 @@ class Reader(NamedTuple):
     Attributes:
         recognises: whether a path is one, by it and the first bytes of a file (of a folder none).
         opened: from a path and a location to the source. has_axes: whether a source may have a location.
+        own: the format in which ``refit`` writes such a source again.
     """
 
     recognises: Callable[[Path, bytes], bool]
     opened: Callable[[Path, Location], Source]
     has_axes: bool = False
+    own: str = "ufo"
 
 
 def open_source(path: str | Path, face_index: int = 0, location: Location = None) -> Source:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from abc import abstractmethod
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -33,7 +34,33 @@ class Drawing:
     place: tuple[float, ...] = ()
 
 
-class Ufo(Source):
+class EditableSource(Source):
+    """A source that takes outlines back: its glyphs are drawn in UFOs, or in one text that becomes UFOs.
+
+    Attributes:
+        folders: the UFOs beside the file at ``path``; none if that is one.
+    """
+
+    folders: Sequence[Path] = ()
+
+    @abstractmethod
+    def drawings(self, name: str) -> Sequence[Drawing]:
+        """Where a glyph is drawn itself, the default master first."""
+
+    @abstractmethod
+    def own_contours(self, name: str) -> list[int | None]:
+        """The number in :meth:`masters` of each contour that a glyph draws itself; None: left out there."""
+
+    @abstractmethod
+    def components(self) -> dict[str, set[str]]:
+        """The names of the components that each composite has itself, in any master."""
+
+    def text_edit(self, layer: str | None) -> Any:
+        """The edit of a source that is one text, in the place of UFOs; see :func:`.back.write_back`."""
+        return None
+
+
+class Ufo(EditableSource):
     """A UFO folder.
 
     Attributes:
@@ -93,16 +120,16 @@ class Ufo(Source):
         return pen, glyph
 
     def drawings(self, name: str) -> list[Drawing]:
-        """Where a glyph is drawn itself."""
+        """See :meth:`EditableSource.drawings`: there is one."""
         return [Drawing(self.path)]
 
     def own_contours(self, name: str) -> list[int | None]:
-        """The number in :meth:`outline` of each contour that a glyph draws itself; None: left out there."""
+        """See :meth:`EditableSource.own_contours`."""
         pen, glyph = self._drawn(name)
         return glyph.numbered(pen.own)
 
     def components(self) -> dict[str, set[str]]:
-        """The names of the components that each composite has itself."""
+        """See :meth:`EditableSource.components`."""
         return components_of([self.default_layer])
 
     def layer(self, name: str) -> GlyphSet:

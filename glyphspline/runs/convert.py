@@ -144,6 +144,8 @@ def convert_font(
     started = time.perf_counter()
     spec = spec or RunSpec()
     require_libraries(spec)
+    for whole in spec.whole:
+        whole.check(source)
     with locked(out):
         table = spec.table.path(source, out) if spec.table else None
         prepare(out, spec, describe(source, spec, glyphs, None), restart, table)

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..code_files import kept
-from ..fitting.options import Options
 from ..hooks import service
 from ..types import Head
 from .choice import SLOWNESS, Choice
 from .pool import WorkerPool
-from .spec import Limits, needs_fit
+from .spec import Limits
 from .warm import code_for, compile_kind, warm
 
 if TYPE_CHECKING:
@@ -96,19 +95,6 @@ class InProcess(Executor):
         sources.cache_clear()
 
 
-def kinds_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
-    """The kinds of work of :mod:`.warm` in a run with these options; None: nothing is converted."""
-    if options is None:
-        return []
-    rest = ["rest"] if options.remove_overlaps else []
-    if formats and not needs_fit(formats, options):
-        return ["unfitted", *rest]
-    fit = "g2" if options.is_for_fonts else options.corners
-    best = [f"{options.corners}_best"] if options.effort == "best" and not options.is_for_fonts else []
-    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
-    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
-
-
 def workers(
     jobs: int | None,
     seconds: float = Limits.seconds,
@@ -123,8 +109,8 @@ def workers(
 
     Args:
         seconds: time limit of a batch, after which its worker is killed.
-        kinds: of work, see :func:`kinds_for`; compiled code that it needs, and that is there, is loaded before the
-            first call. :func:`.engine.settle` may have it made.
+        kinds: of work, see :func:`.spec.kinds_for`; compiled code that it needs, and that is there, is loaded before
+            the first call. :func:`.engine.settle` may have it made.
         expected: number of calls known to come. count: of sources whose tasks come.
         scheduler: address of a dask cluster, whose workers are used instead.
         executor: used instead of all these; it is not closed.

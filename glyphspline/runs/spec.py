@@ -74,6 +74,19 @@ def needs_fit(formats: Sequence[str], options: Options) -> bool:
     return False
 
 
+def kinds_for(options: Options | None, formats: Sequence[str] = ()) -> list[str]:
+    """The kinds of work of :mod:`.small_runs` in a run with these options; None: nothing is converted."""
+    if options is None:
+        return []
+    rest = ["rest"] if options.remove_overlaps else []
+    if formats and not needs_fit(formats, options):
+        return ["unfitted", *rest]
+    fit = "g2" if options.is_for_fonts else options.corners
+    best = [f"{options.corners}_best"] if options.effort == "best" and not options.is_for_fonts else []
+    drawings = ["drawings"] if {"curvature", "gallery", "png", "pdf"} & set(formats) else []
+    return [*(["fixed"] if options.is_fixed else [fit, *best]), *drawings, *rest]
+
+
 @dataclass(frozen=True)
 class Limits:
     """Limits beyond which a glyph fails.
@@ -110,7 +123,8 @@ class RunSpec:
         options: of the conversion. formats: of :func:`available`. names: what the files of glyphs are called after.
         limits: for each glyph. They decide only which glyphs fail and are not in ``run.json``.
         settings: of drawings. maps: what curvature maps show.
-        verb: the command of such a run. unshown: options that it has in Python alone.
+        verb: the command of such a run. needs_formats: whether it writes nothing without.
+        unshown: options that it has in Python alone.
 
     Raises:
         OptionError: one of these is none of what it can be.
@@ -130,6 +144,7 @@ class RunSpec:
     limits: Limits = LIMITS
     maps: Maps = field(default_factory=Maps)
     verb: ClassVar[str] = "convert"
+    needs_formats: ClassVar[bool] = True
     unshown: ClassVar[tuple[str, ...]] = (
         "continuity", "effort", "flatness", "measure", "size", "stroke_width", "thousandths",
     )  # fmt: skip
@@ -137,7 +152,7 @@ class RunSpec:
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):
             raise GlyphsplineError(f"formats are a tuple of names, not {self.formats!r}")
-        if not self.formats and self.verb == "convert":
+        if self.needs_formats and not self.formats:
             raise OptionError(f"no format given: there are {', '.join(available())}")
         for name in self.formats:
             if not isinstance(name, str) or not (name == GALLERY or is_format(name) or whole_named(name)):
@@ -178,8 +193,6 @@ class RunSpec:
     @property
     def kinds(self) -> list[str]:
         """The kinds of work of the run, see :func:`.small_runs.work`."""
-        from .schedule import kinds_for
-
         return kinds_for(self.options, self.formats)
 
     @cached_property

@@ -73,6 +73,9 @@ class WholeFormat(ABC):
     verb: ClassVar[str] = "convert"
     always: ClassVar[bool] = False
 
+    def check(self, source: Source) -> None:  # noqa: B027 -- most sources can
+        """Raise a GlyphsplineError before the run if a source cannot become such a file."""
+
     def path(self, source: Source, out: Path) -> Path:
         """The file in a run's folder."""
         stem = re.sub(r"[^\w-]+", "", source.family)[:50] or "font"
@@ -94,7 +97,7 @@ class ResultsFormat(WholeFormat):
     def write(
         self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any
     ) -> tuple[list[str], Mapping[str, Any]]:
-        """Write the file; returns remarks, and what it holds of glyphs by name.
+        """Write the file; returns remarks, and what it holds of glyphs by name. ``spec`` is the run's.
 
         Args:
             spec: of the run, as its command has it: a :class:`.runs.spec.RunSpec`.

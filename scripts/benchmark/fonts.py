@@ -41,7 +41,7 @@ FACES = {
 }  # fmt: skip
 """Files and characters. Of Han faces a subset is written."""
 
-OPTIONS = gs.Options(corners="sharp", continuity="g2")
+OPTIONS = gs.Options(continuity="g2")
 FORGED = int(os.environ.get("GLYPHSPLINE_BENCH_FORGED", "63"))  # glyphs of a face that FontForge simplifies
 
 

@@ -9,10 +9,10 @@ import pytest
 from playwright.sync_api import expect
 
 import glyphspline as gs
+from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.report.gallery import write_report
 from glyphspline.runs.schedule import InProcess
-from glyphspline.runs.spec import RunSpec
 from glyphspline.writers.svg.path_data import curves_data
 from tests.places import FONTS
 
@@ -321,7 +321,7 @@ def test_convex_and_concave_are_the_inks(page: Any, gallery: Path) -> None:
 
 def test_glyphs_in_all_masters_have_a_slider_for_each_axis(page: Any, tmp_path: Path) -> None:
     font = gs.open_font(FONTS / "variable-cff2.otf")
-    convert_font_masters([font], ["o"], tmp_path, RunSpec(formats=("gallery",), masters=True), InProcess())
+    convert_font_masters([font], ["o"], tmp_path, RefitSpec(gs.Options(), ("gallery",), masters=True), InProcess())
     opened(page, tmp_path)
     page.locator(".card:has(b:text-is('o'))").click()
     axes = page.locator("[data-part=axes] label")

@@ -33,7 +33,10 @@ CONVERSIONS = [
     ["--preset=type", "--format=svg"],
     ["--remove-overlaps", "--format=svg"],
 ]
-REFITS = [["--format=svg"], ["--format=otf"], [], ["--continuity=c2"], ["--masters", "--format=gallery"], ["--masters"]]
+FITS = [
+    *([f"--format={name}"] for name in ("svg", "otf", "ttf", "ufo")), [], ["--continuity=c2"],
+    ["--masters", "--format=gallery"], ["--masters"],
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -66,17 +69,12 @@ def ran(*words: object, status: int = 0) -> str:
     return found.stdout
 
 
-@pytest.mark.parametrize("options", CONVERSIONS, ids=" ".join)
-def test_convert(options: list[str], font: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("verb", "options"), [*(("convert", each) for each in CONVERSIONS), *(("refit", each) for each in FITS)]
+)
+def test_convert_and_refit(verb: str, options: list[str], font: Path, tmp_path: Path) -> None:
     text = "o" if options[0] in ("--corners=smooth", "--count=8") else "l"
-    facts = json.loads(ran("convert", font, "--text", text, *options, "-j0", "--json", "--out", tmp_path / "out"))
-    assert not facts["failed"]
-    assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
-
-
-@pytest.mark.parametrize("options", REFITS, ids=" ".join)
-def test_refit(options: list[str], font: Path, tmp_path: Path) -> None:
-    facts = json.loads(ran("refit", font, "--text", "l", *options, "-j0", "--json", "--out", tmp_path / "out"))
+    facts = json.loads(ran(verb, font, "--text", text, *options, "-j0", "--json", "--out", tmp_path / "out"))
     assert not facts["failed"]
     assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
 

@@ -78,6 +78,10 @@ UNUSABLE = [
     "view {place}/bad.ttf --no-browser",
     "demo {place}/bad.ttf -j 0 -o {new}",
     f"{CONVERT} --text 龘",
+    "convert {gyosho} --text O --format otf -j 0 --out {new}",  # refit does that
+    "refit {gyosho} --text O -j 0",  # nor is it said where to
+    "refit {gyosho} --in-place -j 0",
+    "refit {variable} --masters --format otf,ttf -j 0 --out {new}",  # cubics and quadratics of one fit
     "dataset {place}/none --jobs 0 --out {new}",
     "report {place}",
     "warm --jobs two",

@@ -19,7 +19,7 @@ from glyphspline.readers import open_font
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
 from tests.places import FONTS
-from tests.writers.test_font import largest_distance
+from tests.plugins.fonts.test_font import largest_distance
 
 
 def with_pictures(path: Path, *, outlines: bool) -> Path:

@@ -15,9 +15,8 @@ from glyphspline.fitting.options import Options
 from glyphspline.runs import choice as choices
 from glyphspline.runs.choice import Choice, Cost, costs, least
 from glyphspline.runs.engine import Item, Job, run
-from glyphspline.runs.schedule import kinds_for
 from glyphspline.runs.small_runs import work
-from glyphspline.runs.spec import RunSpec
+from glyphspline.runs.spec import RunSpec, kinds_for
 
 COSTS = {"a": Cost(100.0, 1.1, 0.1), "b": Cost(20.0, 0.6, 0.1), "c": Cost(10.0, 0.0, 0.0)}
 """Compiling a takes as long as 100 units as plain Python, and both as long as 80."""

@@ -27,8 +27,8 @@ from glyphspline.plugins.viewer.atlas import make_atlas
 from glyphspline.readers import open_font
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import entries_of
-from glyphspline.runs.schedule import kinds_for, workers
-from glyphspline.runs.spec import Limits, RunSpec
+from glyphspline.runs.schedule import workers
+from glyphspline.runs.spec import Limits, RunSpec, kinds_for
 from glyphspline.writers.settings import Settings
 from tests.places import ROOT
 

@@ -21,9 +21,9 @@ from ...runs.convert import ConvertJob
 from ...runs.engine import Item, Job, Observer, reason, run
 from ...runs.folder import locked
 from ...runs.font_search import find_fonts
-from ...runs.schedule import Place, kinds_for, sources, workers
+from ...runs.schedule import Place, sources, workers
 from ...runs.shapes import Shapes
-from ...runs.spec import LIMITS, differences
+from ...runs.spec import LIMITS, differences, kinds_for
 from . import remote
 from .card import Summary, card, write_fonts
 from .columns import schema

@@ -95,7 +95,7 @@ def read_drawing(file: Path) -> Outline:
     """
     with opening(file, "drawing"):
         root = svg_root(file)
-        metrics, advance = _metrics(root)
+        metrics, advance = metrics_of(root)
         # Distance in em below which points coincide. Drawings may be in metres as well as in pixels.
         pen = ContourPen(coincident=1e-7 * metrics.units_per_em)
         left_out: Counter[str] = Counter()
@@ -133,7 +133,7 @@ def _unicodes(written: str | None, name: str) -> tuple[int, ...]:
     return (ord(text),) if len(text) == 1 else ()
 
 
-def _metrics(root: Any) -> tuple[FontMetrics, float]:
+def metrics_of(root: Any) -> tuple[FontMetrics, float]:
     """Metrics and advance from ``data-*`` attributes, else from the view box, else from width and height."""
     if root.get("data-units-per-em"):
         keys = ("units-per-em", "ascender", "descender", "advance")
@@ -251,10 +251,10 @@ def path_data(element: Any) -> str:
     return f"M{points}{'Z' if tag == 'polygon' else ''}" if points.strip() else ""
 
 
-def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
+def draw_path(data: str, matrix: FloatArray, pen: Any) -> tuple[int, int]:
     """Draw path data subpath by subpath: svgpathtools would join two that meet in a point.
 
-    An open subpath ends with ``endPath``.
+    An open subpath ends with ``endPath``. Returns the number of segments, with lines that close, and of open subpaths.
     """
     from svgpathtools import Arc, parse_path  # as above
 
@@ -263,7 +263,7 @@ def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
     def placed(points: Sequence[complex]) -> list[tuple[float, float]]:
         return [(a * p.real + b * p.imag + x, c * p.real + d * p.imag + y) for p in map(complex, points)]
 
-    here = 0j
+    here, segments, left_open = 0j, 0, 0
     for subpath in re.findall(r"[Mm][^Mm]*", data):
         numbers = re.findall(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", subpath)
         if len(numbers) < 2:
@@ -274,10 +274,12 @@ def draw_path(data: str, matrix: FloatArray, pen: Any) -> None:
         for segment in parse_path(subpath, current_pos=here):
             for to in arc_cubics(segment) if isinstance(segment, Arc) else [segment.bpoints()[1:]]:
                 (pen.lineTo, pen.qCurveTo, pen.curveTo)[len(to) - 1](*placed(to))
-            end = segment.end
+            end, segments = segment.end, segments + 1
         closed = subpath.rstrip(" \t\r\n\f,").endswith(("Z", "z"))
         (pen.closePath if closed else pen.endPath)()
+        left_open += not closed
         here = start if closed else end
+    return segments, left_open
 
 
 def arc_cubics(arc: Any) -> Iterator[list[complex]]:
@@ -295,4 +297,4 @@ def _recognises(path: Path, head: bytes) -> bool:
     return next(path.glob("*.svg"), None) is not None if path.is_dir() else is_xml(head)
 
 
-READER = Reader(_recognises, lambda path, location: SvgDrawings.opened(path))
+READER = Reader(_recognises, lambda path, location: SvgDrawings.opened(path), own="svg")

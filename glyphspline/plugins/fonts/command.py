@@ -2,29 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from ...cli import arguments as opt
 from ...cli.convert import Conversion, convert_fonts, workplace
-from ...cli.groups import bare
+from ...cli.groups import bare, without
 from ...cli.messages import print_json, say, stop
 from ...cli.tables import runs_facts, runs_table
 from ...fields import WRITTEN, About
 from ...hooks import service
 from .spec import RefitSpec
 
-WHERE = "say where the outlines go: --in-place, --layer NAME, or --out DIR with --format otf, ttf or ufo"
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
 
 
 @bare
 def refit(
     sources: opt.FontFiles,
-    spec: RefitSpec,
+    spec: Annotated[RefitSpec, without(*RefitSpec.unshown)],
     subset: opt.Subset,
     instance: opt.Instance,
     run: opt.RunOptions,
@@ -37,9 +38,9 @@ def refit(
 ) -> bool:
     """Put fitted outlines back into fonts, sources and drawings: the fewest points, smooth to the curvature.
 
-    They go into the source itself, a layer of it, or a copy in a folder: a font, a UFO or a designspace. All glyphs are
-    fitted unless some are asked for; what cannot be fitted within the tolerance stays as it is, and ends the command
-    with status 1.
+    They go into the source itself, a layer of it, or what is written to a folder: a font, a UFO, a designspace, an SVG
+    drawing with its other content as it is. All glyphs are fitted unless some are asked for. What cannot be fitted
+    within the tolerance stays as it is; what was not done ends the command with status 1.
     """
     from ...runs.font_search import find_fonts
 
@@ -47,25 +48,30 @@ def refit(
     if not found:
         stop("no fonts found")
     if out is None and not spec.is_back:
-        stop(WHERE)
+        stop("say where the outlines go: --out DIR, --in-place or --layer NAME")
+    masters = spec.masters or axis is not None
+    if not spec.formats:
+        own, in_masters = own_format(found, axis is not None)
+        if own == "svg":
+            if subset.is_given or masters or spec.layer is not None:
+                stop("drawings are refitted whole, without layers and masters")
+            undone: bool = service("refit_drawings")(found, spec.options, out, run)
+            return undone
+        masters = masters or (in_masters and not instance.location)
+        spec = spec if spec.is_back else replace(spec, formats=(own,))
     if not subset.is_given:
         subset = opt.Subset(all_glyphs=True)
-    masters = spec.masters or axis is not None
-    if not spec.formats and not spec.is_back:
-        spec = replace(spec, formats=(own_format(found[0]),))
     spec = replace(spec, masters=masters)
+    for name, given, why in (
+        ("--location", instance.location, "masters are of the whole design space"),
+        (f"--jobs {run.jobs}", run.scheduler, "masters are converted on this machine"),
+    ):
+        if masters and given:
+            stop(f"{name} is not for --masters: {why}")
     with kept(out) as folder, workplace(run, spec) as executor:
-        call = Conversion(folder, spec, subset, instance, run)
+        call = Conversion(folder, spec, subset, instance, run, out is not None)
         if masters:
-            check_masters(call)
-            names, summary = service("refit_masters")([Path(each) for each in sources], call, axis, executor)
-            facts = {"font": str(found[0]), "out": str(folder), **summary.facts()}
-            if not (run.quiet or run.as_json):
-                for line in summary.lines():
-                    say(line)
-            if run.as_json:
-                print_json(facts)
-            return bool(names.missing or summary.failed or summary.outside)
+            return in_all_masters([Path(each) for each in sources], call, axis, executor)
         alone = found == [Path(sources[0])] and len(sources) == 1
         runs = convert_fonts(found, call, executor, alone)
     if not (run.quiet or run.as_json or alone):
@@ -75,14 +81,18 @@ def refit(
     return any(one.undone for one in runs)
 
 
-def own_format(path: Path) -> str:
-    """The format of a source itself, which is written where none is asked for."""
-    from ...readers import Font, open_source
+def own_format(paths: Sequence[Path], become_one: bool) -> tuple[str, bool]:
+    """The format of sources themselves, and whether they are of masters; of single fonts that ``become_one``, ttf."""
+    from ...readers.open import open_source, reader_of
 
-    source = open_source(path)
-    if isinstance(source, Font):
-        return "ttf" if source.outer < 0 else "otf"
-    return "ufo"
+    readers = {path: reader_of(path) for path in paths}
+    found = {
+        reader.own if reader else "ttf" if become_one or open_source(path).outer < 0 else "otf"
+        for path, reader in readers.items()
+    }
+    if len(found) > 1:
+        stop(f"sources of several kinds, {', '.join(sorted(found))}: refit those of one kind, or say --format")
+    return found.pop(), all(reader is not None and reader.has_axes for reader in readers.values())
 
 
 @contextmanager
@@ -95,11 +105,13 @@ def kept(out: Path | None) -> Iterator[Path]:
         yield Path(folder)
 
 
-def check_masters(call: Conversion) -> None:
-    """Stop if the options of a run over masters clash."""
-    for name, given, why in (
-        ("location", call.instance.location, "masters are of the whole design space"),
-        ("scheduler", call.run.scheduler, "masters are converted on this machine"),
-    ):
-        if given:
-            stop(f"--{name} is not for --masters: {why}")
+def in_all_masters(sources: Sequence[Path], call: Conversion, axis: str | None, executor: Executor) -> bool:
+    """Fit a family in all masters at once; whether something was not done."""
+    names, summary = service("refit_masters")(sources, call, axis, executor)
+    facts = {"font": str(sources[0]), "out": str(call.out), **summary.facts()}
+    if call.run.as_json:
+        print_json(facts)
+    elif not call.run.quiet:
+        for line in summary.lines():
+            say(line)
+    return bool(names.missing or summary.failed or summary.outside)

@@ -6,7 +6,7 @@ from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import Any, ClassVar, cast
 
 from ...errors import FontError, OutputError
 from ...files import write_whole
@@ -17,10 +17,6 @@ from ...types import counted, shortened
 from ...writers.formats import ResultsFormat
 from .read_back import Held, Promise, held
 from .tables.font_glyphs import ROUNDING, Flavour, fitting_tolerance
-
-if TYPE_CHECKING:
-    from ...runs.spec import RunSpec
-    from .spec import RefitSpec
 
 NAMED = 5
 """Glyphs named in a remark."""
@@ -50,7 +46,7 @@ class FontFormat(ResultsFormat):
             return tolerance if options.is_for_fonts else fitting_tolerance(tolerance, "ttf")
         return max(fitting_tolerance(tolerance, "otf") - rounding(options), tolerance / 2)
 
-    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> Written:
+    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any) -> Written:
         """Write the font."""
         from .tables.font_file import to_font
         from .tables.stored import compared, stored_facts
@@ -63,9 +59,7 @@ class FontFormat(ResultsFormat):
                 yield result
 
         tolerance, flavour = spec.options.tolerance_for(source.metrics.units_per_em), cast(Flavour, self.name)
-        data, summary = to_font(
-            source, each(), flavour, tolerance=tolerance, family=cast("RefitSpec", spec).family_of(source)
-        )
+        data, summary = to_font(source, each(), flavour, tolerance=tolerance, family=spec.family_of(source))
         write_whole(str(path), data, durable=True)
         found = Held(summary.bounds, summary.beyond)
         near, far = found.words
@@ -101,7 +95,7 @@ class Ufo(ResultsFormat):
         """It has points at extrema of rounded curves, which are rounded once more."""
         return max(tolerance - 2 * rounding(options), tolerance / 2)
 
-    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> Written:
+    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any) -> Written:
         """Write the UFO, and read it back."""
         from .ufo_folder import write_ufo
 
@@ -111,12 +105,12 @@ class Ufo(ResultsFormat):
         remarks = [f"{path.name}: {write_ufo(source, promised(glyphs, spec, promises), path)} glyphs"]
         return as_read(path, promises, None, remarks)
 
-    def put_back(self, source: Source, glyphs: Iterator[GlyphResult], spec: RunSpec, copy: Path | None) -> Written:
+    def put_back(self, source: Source, glyphs: Iterator[GlyphResult], spec: Any, copy: Path | None) -> Written:
         """Write outlines into a UFO, or a copy of it, and read it back."""
         from .back.back import of_results
 
         promises = dict[str, Promise]()
-        layer = None if copy else cast("RefitSpec", spec).layer
+        layer = None if copy else spec.layer
         ufo: Any = source
         remarks = back_to_source(source, of_results(ufo, promised(glyphs, spec, promises)), spec, copy)
         return as_read(copy or source.path, promises, layer, remarks)
@@ -127,12 +121,8 @@ class Back(Ufo):
 
     name, always = "source", True
 
-    def path(self, source: Source, out: Path) -> Path:
-        """Where the source is."""
-        return source.path
-
-    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: RunSpec) -> Written:
-        """Write outlines into the source, and read it back."""
+    def check(self, source: Source) -> None:
+        """Refuse what takes no outlines back, or not so."""
         from ...readers.ufo import Ufo as OpenedUfo
         from .back.back import editable
 
@@ -140,13 +130,20 @@ class Back(Ufo):
             raise OutputError(
                 "the outlines of a designspace go back in all masters: add --masters", font=str(source.path)
             )
+
+    def path(self, source: Source, out: Path) -> Path:
+        """Where the source is."""
+        return source.path
+
+    def write(self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any) -> Written:
+        """Write outlines into the source, and read it back."""
         return self.put_back(source, glyphs, spec, None)
 
 
 OTF, TTF, UFO, BACK = Otf(), Ttf(), Ufo(), Back()
 
 
-def back_to_source(source: Source, new: Any, spec: RunSpec, copy: Path | None = None) -> list[str]:
+def back_to_source(source: Source, new: Any, spec: Any, copy: Path | None = None) -> list[str]:
     """Write new contours into the source, a UFO or designspace, or into a copy of it; returns remarks for the summary.
 
     Args:
@@ -160,7 +157,7 @@ def back_to_source(source: Source, new: Any, spec: RunSpec, copy: Path | None = 
     from .back.back import write_back
 
     own: Any = source
-    layer = None if copy else cast("RefitSpec", spec).layer
+    layer = None if copy else spec.layer
     with writing(copy or source.path):
         found = write_back(own, new, spec.options.precision, copy=copy, layer=layer)
     where = copy.name if copy else f"layer {layer} of {source.path.name}" if layer else source.path.name
@@ -171,7 +168,7 @@ def back_to_source(source: Source, new: Any, spec: RunSpec, copy: Path | None = 
     return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")
 
 
-def promised(glyphs: Iterator[GlyphResult], spec: RunSpec, promises: dict[str, Promise]) -> Iterator[GlyphResult]:
+def promised(glyphs: Iterator[GlyphResult], spec: Any, promises: dict[str, Promise]) -> Iterator[GlyphResult]:
     """The results, of each of which is noted what is said of it."""
     for result in glyphs:
         tolerance = spec.options.tolerance_for(result.outline.metrics.units_per_em)

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 from ...errors import OptionError
 from ...fields import WRITTEN, option
 from ...fitting.options import Options
-from ...runs.spec import RunSpec
+from ...runs.spec import POLYGON, RESULTS, RunSpec
 from ...writers.formats import WholeFormat
-from .formats import BACK
 
 if TYPE_CHECKING:
     from ...readers import Source
@@ -25,10 +24,11 @@ class RefitSpec(RunSpec):
     """How outlines are fitted again, and where they go.
 
     Attributes:
-        formats: of whole fonts, and drawings of the results; none where outlines go into the source.
+        formats: of whole fonts, and drawings of the results; none where outlines go into the source alone.
         keep_name: whether written fonts have the source's family name.
         in_place, layer: write new outlines into the source, in place of the old ones or into a layer beside them.
         masters: all masters of a variable font at once.
+        unshown: what ``convert`` alone asks for: how results are drawn, and curves that fonts do not store.
 
     Raises:
         OptionError: as :class:`.RunSpec`; or both ``in_place`` and ``layer``.
@@ -36,12 +36,15 @@ class RefitSpec(RunSpec):
 
     options: Options = field(default_factory=lambda: FOR_FONTS)
     formats: tuple[str, ...] = option(
-        (), "Write these formats: otf, ttf, ufo; drawings of the new outlines too.", WRITTEN, "NAME,…", flags="--format"
-    )
+        (),
+        "Write otf, ttf or ufo, and drawings of the new outlines: svg, gallery and other formats of convert. Without "
+        "it, what the source is.",
+        WRITTEN, "NAME,…", flags="--format",
+    )  # fmt: skip
     masters: bool = option(
         False,
-        "Fit all masters of a variable font or designspace at once, to a variable font (--format otf, ttf), "
-        "designspace (ufo), or back into the source.",
+        "Fit all masters of a variable font or designspace at once: into a variable font (otf, ttf), a designspace "
+        "(ufo), or the source.",
         WRITTEN,
     )  # fmt: skip
     keep_name: bool = option(
@@ -49,16 +52,16 @@ class RefitSpec(RunSpec):
         WRITTEN,
     )  # fmt: skip
     in_place: bool = option(
-        False, "Write new outlines into the source, a UFO, designspace or Glyphs file. Nothing else in it changes.",
+        False, "Write into the source: a UFO, designspace, Glyphs file or drawing. Nothing else in it changes.",
         WRITTEN,
     )  # fmt: skip
     layer: str | None = option(
-        None, "Write new outlines into this layer of the source, beside the old ones: glyphspline without a NAME.",
+        None, "Write into this layer of the source, beside the old outlines: glyphspline without a NAME.",
         WRITTEN, "[NAME]",
     )  # fmt: skip
 
-    verb = "refit"
-    unshown = ("measure",)
+    verb, needs_formats = "refit", False
+    unshown = ("settings", "maps", "names", "variant", "step", "count", "measure")
 
     def __post_init__(self) -> None:
         if self.in_place and self.layer is not None:
@@ -75,7 +78,18 @@ class RefitSpec(RunSpec):
     @cached_property
     def whole(self) -> tuple[WholeFormat, ...]:
         """The run's formats with one file a font, and the source."""
-        return (*super().whole, *([BACK] if self.is_back else []))
+        if not self.is_back:
+            return super().whole
+        from .formats import BACK  # imports fontTools
+
+        return (*super().whole, BACK)
+
+    @cached_property
+    def folders(self) -> tuple[str, ...]:
+        """See :attr:`.RunSpec.folders`: fits in all masters are kept whatever is written, and have no polygons."""
+        if not self.masters:
+            return super().folders
+        return (*(name for name in super().folders if name not in (POLYGON, RESULTS)), RESULTS)
 
     @property
     def kinds(self) -> list[str]:

@@ -13,6 +13,7 @@ import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument
@@ -28,8 +29,8 @@ from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, s
 from ...outlines.outline import Outline
 from ...readers.open import UTF8, Reader, beginning
 from ...readers.pens import MAX_COMPONENTS, ContourPen, enter_component
-from ...readers.source import Location, Source, parsed
-from ...readers.ufo import Drawing, Ufo, components_of
+from ...readers.source import Location, parsed
+from ...readers.ufo import Drawing, EditableSource, Ufo, components_of
 from ...types import Head
 
 
@@ -43,7 +44,7 @@ class _Master(Drawing):
     at: dict[str, float]
 
 
-class Designspace(Source):
+class Designspace(EditableSource):
     """A designspace at one location.
 
     Attributes:
@@ -88,6 +89,7 @@ class Designspace(Source):
             master = _Master(ufo.path, source.layerName, place, name=name, glyphs=glyphs, muted=muted, at=at)
             self._masters_of_all.append(master)
         self._ufos, at_default = tuple(ufos.values()), ufos[default.path]
+        self.folders = [ufo.path for ufo in self._ufos]
         self.family, self.style, self.metrics = at_default.family, at_default.style, at_default.metrics
         self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
         self._components: dict[str, tuple[Masters, list[int | None]]] = {}
@@ -159,22 +161,17 @@ class Designspace(Source):
             self._components[name] = found, pen.own
         return found, pen.own
 
-    @property
-    def folders(self) -> list[Path]:
-        """Its UFOs."""
-        return [ufo.path for ufo in self._ufos]
-
     def drawings(self, name: str) -> Sequence[_Master]:
-        """Where a glyph is drawn itself, the default master first."""
+        """See :meth:`.EditableSource.drawings`."""
         return sorted(self._drawn_in(name), key=lambda each: any(each.place))
 
     def own_contours(self, name: str) -> list[int | None]:
-        """The number in :meth:`masters` of each contour that a glyph draws itself; None: left out there."""
+        """See :meth:`.EditableSource.own_contours`."""
         own: list[int | None] = self.drawings(name)[0].glyphs[name].numbered(self._mixed(name, [])[1])
         return own
 
     def components(self) -> dict[str, set[str]]:
-        """The names of the components that each composite has itself, in any master."""
+        """See :meth:`.EditableSource.components`."""
         return components_of([each.glyphs for each in self._masters_of_all])
 
     def _region(self, support: dict[str, tuple[float, float, float]]) -> Region:
@@ -281,6 +278,12 @@ class GlyphsFile(Designspace):
         """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""
         key = "com.schriftgestaltung.fontMasterOrder"
         return {ufo.path: ids[ufo.lib.get(key, 0)] for ufo in self._ufos}
+
+    def text_edit(self, layer: str | None) -> Any:
+        """See :meth:`.EditableSource.text_edit`."""
+        from .glyphs_edit import GlyphsEdit
+
+        return GlyphsEdit(self.path, self.master_ids, layer)
 
 
 def is_glyphs(head: bytes) -> bool:

@@ -52,13 +52,13 @@ from ...types import FloatArray, MadeOnDemand, counted, listed, rounded_up
 from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
 from ...writers.svg.path_data import PathData, curves_data
-from ..fonts.back.back import editable, of_masters
+from ..fonts.back.back import editable
 from ..fonts.formats import back_to_source
 from ..fonts.spec import RefitSpec
 from ..fonts.tables.font_glyphs import SHARE, Flavour
-from ..fonts.tables.master_deltas import Redrawn, StoredGlyph, bound_of
 from .convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
 from .designspace import Designspace, GlyphsFile
+from .redrawn import Redrawn, StoredGlyph, bound_of, of_masters
 from .single_fonts import Unmatched, axis_of, masters_of_fonts
 
 if TYPE_CHECKING:
@@ -98,9 +98,8 @@ class MastersJob(Output, Job[Task, list[Done]]):
         if in_quadratics(self.spec):
             from .quadratic_masters import quadratic_masters
 
-            (font,) = sources(*self.places)
-            assert isinstance(font, Font)
-            result = quadratic_masters(font, masters, self.options)
+            (font, *others) = sources(*self.places)
+            result = quadratic_masters(font if isinstance(font, Font) and not others else None, masters, self.options)
         else:
             result = convert_masters(masters, self.options)
         glyph, nothing = default_glyph(result), PathData("", None)
@@ -243,8 +242,8 @@ def _check(sources: Sequence[Source], spec: RefitSpec, axis: str | None) -> None
     if unknown := [name for name in spec.formats if name not in FORMATS]:
         raise GlyphsplineError(f"masters become {', '.join(FORMATS)}, not {', '.join(unknown)}")
     check_options(spec.options)
-    if in_quadratics(spec) and (axis is not None or not isinstance(font, Font) or {"otf", "ufo"} & {*spec.formats}):
-        raise GlyphsplineError('beside otf and ufo, and of single fonts, ttf is made of curves of continuity "c2"')
+    if in_quadratics(spec) and {"otf", "ufo"} & {*spec.formats}:
+        raise GlyphsplineError("ttf has quadratics: ask for otf and ufo in another run, or for --continuity c2")
     if spec.is_back and (axis is not None or not isinstance(font, Designspace)):
         editable(font)
         raise OutputError("the outlines of a UFO go back without --masters", font=str(font.path))
@@ -327,8 +326,8 @@ def _font(
     sources: Sequence[Source], redrawn: Mapping[str, Redrawn], flavour: Flavour, spec: RefitSpec, axis: str | None
 ) -> tuple[bytes, VariableSummary]:
     """A variable font of the new contours: the source's own, with outlines of its kind or the other, or a new one."""
-    from ..fonts.tables.other_outlines import to_other_outlines
     from .new_variable_font import to_new_variable_font
+    from .other_outlines import to_other_outlines
     from .variable_font import flavour_of, to_variable_font
 
     source = sources[0]
@@ -372,7 +371,7 @@ def _write_fonts(
         for to in [copy] * ("ufo" in spec.formats) + [None] * spec.is_back:
             summary.remarks += back_to_source(source, of_masters(source, redrawn), spec, to)
     elif "ufo" in spec.formats:
-        from ..fonts.ufo_folder import write_designspace
+        from .new_designspace import write_designspace
 
         left = write_designspace(source, redrawn, paths["ufo"])
         summary.remarks.append(f"designspace: {counted(len(redrawn) - len(left), 'glyph')}")

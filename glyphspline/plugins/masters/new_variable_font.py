@@ -26,8 +26,9 @@ from ...readers import Font, Source
 from ...types import MadeOnDemand
 from ..fonts.tables.font_file import postscript, saved, stored_names, to_font
 from ..fonts.tables.font_glyphs import decomposed, users
-from ..fonts.tables.master_deltas import Redrawn, axes_of, check_steps, oriented, rounded_deltas
+from ..fonts.tables.master_deltas import axes_of, check_steps, rounded_deltas
 from ..fonts.tables.variable_glyf import PHANTOMS
+from .redrawn import Redrawn, oriented
 from .single_fonts import axis_of
 from .variable_font import VariableSummary, to_variable_font
 
@@ -68,11 +69,16 @@ def to_new_variable_font(
     styles = _styles(sources, values)
     _add_axis(font, design, dict(zip(styles, values, strict=True)), family or f"{default.family} Spline")
     add_advances(font, MadeOnDemand(given, lambda stored: redrawn[given[stored]].masters))
-    drawn = MadeOnDemand(given, lambda stored: oriented(redrawn[given[stored]], "ttf"))
+    drawn = MadeOnDemand(given, lambda stored: _as_new(redrawn[given[stored]]))
     data, summary = to_variable_font(opened(font, default.path), drawn, "ttf", tolerance=tolerance)
     glyphs = {given[stored]: glyph for stored, glyph in summary.glyphs.items()}
     left = {given[stored]: reason for stored, reason in summary.left.items()}
     return _finished(data, list(summary.left)), replace(summary, glyphs=glyphs, left=left)
+
+
+def _as_new(new: Redrawn) -> Redrawn:
+    """A glyph of which the font in the making holds no contour: what it has there is the default's."""
+    return replace(oriented(new, "ttf"), numbers=(-1,) * len(new.contours))
 
 
 def _check(default: Source, design: DesignAxis, redrawn: Mapping[str, Redrawn]) -> None:

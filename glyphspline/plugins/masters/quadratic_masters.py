@@ -13,23 +13,24 @@ from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
 from ...types import IntArray
 from ..fonts.tables.font_glyphs import drop_endless
-from ..fonts.tables.quadratic_contours import in_quadratics, unchanged
-from ..fonts.tables.stretches import Turning, tally
-from ..fonts.tables.variable_glyf import Quadratics
 from .convert_masters import MastersContourResult, MastersResult, convert_masters, is_regular
+from .quadratic_contours import in_quadratics, unchanged
+from .quadratic_glyphs import Quadratics
+from .stretches import Turning, tally
 
 
-def quadratic_masters(source: Font, masters: Masters, options: Options) -> MastersResult:
-    """A glyph of a variable font in quadratics, as few points as follow it; or as it is, where none are to be had.
+def quadratic_masters(source: Font | None, masters: Masters, options: Options) -> MastersResult:
+    """A glyph in all masters in quadratics, as few points as follow it; or as it is, where none are to be had.
 
     Args:
-        source: with outlines of either kind. options: the tolerance, which holds at every location.
+        source: with outlines of either kind; None: the masters are of single fonts.
+        options: the tolerance, which holds at every location.
 
     Raises:
         GlyphsplineError: see :func:`.convert_masters.convert_masters`.
     """
     tolerance, corners = options.tolerance_for(masters.metrics.units_per_em), masters.weights_at(masters.grid())
-    tallies, known = dict[tuple[MasterContour, ...], IntArray](), glyphs_of(source)
+    tallies, known = dict[tuple[MasterContour, ...], IntArray](), None if source is None else glyphs_of(source)
     owns, shift = ({}, np.zeros(len(masters))) if known is None else known[0].own(known[1][masters.gid], masters)
     tolerance *= 1.0 if known is None else known[0].share(known[1][masters.gid])
 

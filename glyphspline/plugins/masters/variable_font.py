@@ -25,17 +25,14 @@ from ...outlines.contour_arrays import lines_and_cubics
 from ...outlines.masters import MasterContour, Masters
 from ...readers import Font
 from ...readers.source import reusing
-from ...types import FloatArray, Head, IntArray, counted
+from ...types import Head, IntArray, counted
 from ..fonts.tables.font_file import drop_signature, replace_family, saved, stored_names
 from ..fonts.tables.font_glyphs import LIMIT, Flavour, drop_endless, parts_of, put_string, scales
-from ..fonts.tables.master_deltas import Redrawn, StoredGlyph, check_steps, displaced, order_of, rounded_deltas
-from ..fonts.tables.stretches import NOTHING_NEW, Segments, fewest, settle, tally
-from ..fonts.tables.variable_glyf import Quadratics
+from ..fonts.tables.master_deltas import PARTS, blend, check_steps, order_of, regions_of, rounded_deltas
+from .quadratic_glyphs import Quadratics
+from .redrawn import Redrawn, StoredGlyph, displaced
+from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
 from .variations import Variations, executed
-
-PARTS = 1 << 16
-"""Parts of a unit to which coordinates are rounded. The format's numbers are 16.16, so that such fractions, and sums
-of them, are exact. Any fraction takes five bytes."""
 
 LONGEST = 65535
 """Bytes of the longest char string that readers have to take."""
@@ -172,23 +169,11 @@ def components(source: Font, names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class CharStrings2:
-    """The char strings of a font, to be replaced one by one. Those of other glyphs keep their bytes.
-
-    Attributes:
-        regions: (A, 3) each, of every item of the font's variation store.
-    """
+    """The char strings of a font, to be replaced one by one. Those of other glyphs keep their bytes."""
 
     def __init__(self, font: TTFont) -> None:
-        self._font = font
-        top = font["CFF2"].cff.topDictIndex[0]
-        self._strings = top.CharStrings
-        self.regions: list[list[FloatArray]] = []
-        if "VarStore" in top.rawDict:
-            store = top.VarStore.otVarStore
-            axes = font["fvar"].axes
-            supports = [region.get_support(axes) for region in store.VarRegionList.Region]
-            regions = [np.array([support.get(axis.axisTag, (0, 0, 0)) for axis in axes]) for support in supports]
-            self.regions = [[regions[index] for index in data.VarRegionIndex] for data in store.VarData]
+        self._font, self._regions = font, regions_of(font)
+        self._strings = font["CFF2"].cff.topDictIndex[0].CharStrings
 
     def replace(self, name: str, redrawn: Redrawn) -> StoredGlyph:
         """Replace a glyph.
@@ -241,8 +226,8 @@ class CharStrings2:
     def _place(self, masters: Masters, old: Any) -> tuple[int, list[int]]:
         """The index of the item of the store that has just their regions, and the numbers of masters in its order."""
         reader = executed(T2CharString(bytecode=old.bytecode, private=old.private, globalSubrs=old.globalSubrs))
-        for index in (reader.vsIndex, *range(len(self.regions))):
-            if index < len(self.regions) and (order := order_of(self.regions[index], masters)) is not None:
+        for index in (reader.vsIndex, *range(len(self._regions))):
+            if index < len(self._regions) and (order := order_of(self._regions[index], masters)) is not None:
                 return index, order
         raise GlyphsplineError(f"no item of the font's variation store has just its {len(masters) - 1} regions")
 
@@ -276,9 +261,3 @@ def drawing(steps: list[IntArray], contours: Sequence[MasterContour], name: str)
             commands.pop()  # the line back to the start is drawn by the end of the contour
         at = each[:, -1:] if contour.degrees[-1] == 1 else each[:, :1]
     return commands
-
-
-def blend(column: list[float]) -> Any:
-    """A number, or a list of a default, deltas and 1, which the specialiser takes for a blend; in parts of a unit."""
-    values = [round(value) if abs(value - round(value)) < 1e-5 else round(value * PARTS) / PARTS for value in column]
-    return [*values, 1] if any(values[1:]) else values[0]

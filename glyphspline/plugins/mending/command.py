@@ -24,8 +24,7 @@ from ..fonts.spec import RefitSpec
 
 if TYPE_CHECKING:
     from ...readers import Font
-    from ...readers.ufo import Ufo
-    from ..masters.designspace import Designspace
+    from ...readers.ufo import EditableSource
     from .job import MendedSource
     from .state import Change
 
@@ -59,9 +58,8 @@ def mend(
     tolerance, or bring a new finding of any kind, is left and named, and ends the command with status 1.
     """
     from ...readers import Font, open_source
-    from ...readers.ufo import Ufo
+    from ...readers.ufo import EditableSource
     from ...runs.schedule import workers
-    from ..masters.designspace import Designspace
     from .job import mend_source
 
     if (out is not None) + spec.is_back + dry_run != 1:
@@ -77,7 +75,7 @@ def mend(
     with workers(run.processes, kinds=["mending"], expected=1, count=len(sources)) as pool:
         for path in sources:
             source = open_source(path)
-            if not isinstance(source, Ufo | Designspace | Font):
+            if not isinstance(source, EditableSource | Font):
                 stop(f"{path}: only UFOs, designspaces, Glyphs files and fonts are mended")
             names: Sequence[str] = source.glyph_names
             if subset.is_given:
@@ -105,7 +103,7 @@ def mend(
     return undone or any(one.left or one.failed for one in found)
 
 
-def copy_of(source: Ufo | Designspace | Font, out: Path) -> Path:
+def copy_of(source: EditableSource | Font, out: Path) -> Path:
     """Where the copy of a source goes: a designspace's is a folder of its files, as its UFOs lie beside it."""
     from ..masters.designspace import Designspace, GlyphsFile
 

@@ -13,12 +13,11 @@ from ...files import writing
 from ...outlines.flaws.kinds import MENDED_UNASKED, THRESHOLDS, Thresholds
 from ...outlines.masters import Masters
 from ...readers import Font
-from ...readers.ufo import Ufo
+from ...readers.ufo import EditableSource
 from ...runs.engine import Item, Job, Observer, reason, run
 from ...runs.schedule import Place, heads_of, place_of, sources, workers
 from ...runs.spec import LIMITS
 from ...types import Head
-from ..masters.designspace import Designspace
 from .fewer import EDITED
 from .mend import check_kinds, mended
 from .state import Change, Into, State
@@ -87,11 +86,9 @@ def into_of(source: Any, masters: Masters) -> Into:
         fixed = {number: OF_COMPONENT for number in range(count) if number not in own}
         step = 1.0 if source.outer < 0 else None
         return Into(fixed | dict(stored.why), FONT_KEEPS, stored.masters, step)
-    from ..fonts.ufo_folder import places_of
-
     own = {index for index in source.own_contours(masters.name) if index is not None}
     fixed = {number: OF_COMPONENT for number in range(count) if number not in own}
-    if {each.place for each in source.drawings(masters.name)} != set(places_of(masters)):
+    if {each.place for each in source.drawings(masters.name)} != set(masters.stored_peaks):
         fixed |= dict.fromkeys(own, "has masters in which only its components are drawn")
     return Into(fixed)
 
@@ -134,7 +131,7 @@ class MendedSource:
 
 
 def mend_source(
-    source: Ufo | Designspace | Font,
+    source: EditableSource | Font,
     names: Sequence[str],
     *,
     kinds: Sequence[str] = MENDED_UNASKED,

@@ -12,13 +12,12 @@ from typing import Any, NamedTuple
 from ...outlines.flaws.kinds import Thresholds
 from ...outlines.masters import Masters
 from ...readers import Font
-from ...readers.ufo import Ufo
+from ...readers.ufo import EditableSource
 from ...runs.engine import Item, Job, run
 from ...runs.schedule import Place, heads_of, place_of, sources
 from ...types import Head
 from ..fonts.back.back import Written, moved_points, write_back
 from ..fonts.back.fonts import edit_of, write_points
-from ..masters.designspace import Designspace
 from .ink import INK, keeps_ink
 from .state import DIGITS, PER_EM, Design
 
@@ -32,7 +31,7 @@ class New(NamedTuple):
 
 
 def write(
-    source: Ufo | Designspace | Font, glyphs: Sequence[New], copy: Path | None, layer: str | None = None,
+    source: EditableSource | Font, glyphs: Sequence[New], copy: Path | None, layer: str | None = None,
     dry: bool = False,
 ) -> Written:  # fmt: skip
     """Write mended glyphs into a source, a layer of it or a copy; see :func:`.back.write_back`."""
@@ -43,7 +42,7 @@ def write(
 
 
 def spoiling(
-    source: Ufo | Designspace | Font, glyphs: Iterable[New], tolerance: float | None, thresholds: Thresholds,
+    source: EditableSource | Font, glyphs: Iterable[New], tolerance: float | None, thresholds: Thresholds,
     pool: Executor,
 ) -> dict[str, str]:  # fmt: skip
     """The mended glyphs that would change a composite's ink, or their own, as not all is written; and why they stay.
@@ -73,7 +72,7 @@ def spoiling(
 
 
 def _in_part(
-    source: Ufo | Designspace | Font, glyphs: Sequence[New], tolerance: float | None, thresholds: Thresholds
+    source: EditableSource | Font, glyphs: Sequence[New], tolerance: float | None, thresholds: Thresholds
 ) -> list[str]:
     """Glyphs of which only some contours can be written, so that the ink changes."""
     kept, found = write(source, glyphs, None, dry=True).contours, []

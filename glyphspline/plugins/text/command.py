@@ -63,7 +63,8 @@ def text(
 
     Each glyph is fitted once, however often it occurs.
     """
-    from ...runs.schedule import kinds_for, workers
+    from ...runs.schedule import workers
+    from ...runs.spec import kinds_for
 
     files = list(formats_of(out, drawings.format_name))
     names = tuple(name for _, name in files)

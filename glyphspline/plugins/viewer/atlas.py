@@ -18,8 +18,8 @@ from ...readers import Source
 from ...runs.choice import USUAL
 from ...runs.convert import SCALE_SAMPLE
 from ...runs.engine import Item, Job, Observer, reason, run
-from ...runs.schedule import Place, kinds_for, place_of, sources, workers
-from ...runs.spec import LIMITS
+from ...runs.schedule import Place, place_of, sources, workers
+from ...runs.spec import LIMITS, kinds_for
 from ...writers.figures.basics import write_pages
 from ...writers.settings import BOTH, Maps
 from ...writers.svg.comb import curvature_scale

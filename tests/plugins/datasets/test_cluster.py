@@ -19,8 +19,8 @@ from glyphspline.readers import open_font
 from glyphspline.runs import pool as pools
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.pool import TimeLimitError, WorkerLostError
-from glyphspline.runs.schedule import kinds_for, workers
-from glyphspline.runs.spec import Limits, RunSpec
+from glyphspline.runs.schedule import workers
+from glyphspline.runs.spec import Limits, RunSpec, kinds_for
 from tests.places import GYOSHO as FONT
 from tests.runs.test_hostile import endless_font
 

@@ -1,4 +1,4 @@
-"""New outlines in a UFO, a designspace or a Glyphs file: in the source itself, in a layer of it, or in a copy.
+"""New outlines in a source that takes them back, as a UFO: in itself, in a layer of it, or in a copy.
 
 Only the points of contours change, as text; an unchanged glyph's file keeps its bytes. Components, anchors, guidelines,
 kerning, groups, features, layers, libs, images and font info stay as they are, and so do contours that are open, drawn
@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import plistlib
 import shutil
-import uuid
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -24,12 +24,9 @@ from ....fitting.results import GlyphResult
 from ....outlines.masters import Masters
 from ....outlines.outline import Contour
 from ....readers import Source
-from ....readers.ufo import Drawing, Ufo
-from ...masters.designspace import Designspace, GlyphsFile
-from ..tables.master_deltas import Redrawn
-from ..ufo_folder import places_of, replacing, stored_curves
+from ....readers.ufo import Drawing, EditableSource, Ufo
+from ..ufo_folder import replacing, stored_curves
 from .glif import Glif
-from .glyphs_text import GlyphsText, Layer
 from .nodes import Node, Position, moved, replaced
 
 Drawn = tuple[list[list[Node]], frozenset[Position]]
@@ -65,13 +62,29 @@ class New:
     redrawn: Collection[int] = ()
 
 
-def editable(source: Source) -> Ufo | Designspace:
+class Edit(ABC):
+    """How glyphs are read from a source and put into it."""
+
+    @abstractmethod
+    def drawn(self, drawing: Drawing, name: str) -> Drawn:
+        """What a glyph draws itself."""
+
+    @abstractmethod
+    def put(self, drawing: Drawing, name: str, nodes: Mapping[int, Sequence[Node]]) -> None:
+        """Put new nodes into some of a glyph's contours."""
+
+    @abstractmethod
+    def finish(self) -> None:
+        """Write what is still to be written when all glyphs are there."""
+
+
+def editable(source: Source) -> EditableSource:
     """A source that takes outlines back.
 
     Raises:
         OutputError: it is of another kind.
     """
-    if not isinstance(source, Ufo | Designspace):
+    if not isinstance(source, EditableSource):
         raise OutputError("only UFOs, designspaces and Glyphs files take outlines back", font=str(source.path))
     return source
 
@@ -83,25 +96,16 @@ def of_results(source: Ufo, results: Iterable[GlyphResult]) -> Iterable[New]:
         yield New(result.outline.name, contours, source.drawings(result.outline.name))
 
 
-def of_masters(source: Designspace, redrawn: Mapping[str, Redrawn]) -> Iterable[New]:
-    """The new contours of a designspace's glyphs in the masters in which they are drawn."""
-    for name, new in redrawn.items():
-        places = places_of(new.masters)
-        drawings = [each for each in source.drawings(name) if each.place in places]
-        chosen = [places.index(each.place) for each in drawings]
-        yield New(name, [[Contour(c.points[k], c.degrees) for k in chosen] for c in new.contours], drawings)
-
-
-def moved_points(source: Ufo | Designspace, old: Masters, new: Masters, redrawn: Collection[int]) -> New:
+def moved_points(source: EditableSource, old: Masters, new: Masters, redrawn: Collection[int]) -> New:
     """The contours of a glyph of which points moved, in all masters; ``redrawn``: see :class:`New`."""
-    places, drawings = places_of(new), source.drawings(new.name)
+    places, drawings = new.stored_peaks, source.drawings(new.name)
     chosen = [places.index(each.place) for each in drawings]
     both = [[[Contour(c.points[k], c.degrees) for k in chosen] for c in each.contours] for each in (new, old)]
     return New(new.name, both[0], drawings, both[1], redrawn)
 
 
 def write_back(
-    source: Ufo | Designspace, glyphs: Iterable[New], digits: int, *, copy: Path | None = None,
+    source: EditableSource, glyphs: Iterable[New], digits: int, *, copy: Path | None = None,
     layer: str | None = None, dry: bool = False,
 ) -> Written:  # fmt: skip
     """Write new contours, rounded to ``digits`` decimals, into a source or a copy of it.
@@ -115,8 +119,7 @@ def write_back(
         OutputError: something else is at ``copy``; a UFO before version 3 has no layers. OSError: it cannot be written.
         GlyphsplineError: a file of the source is broken.
     """
-    if isinstance(source, GlyphsFile):
-        edit = _GlyphsEdit(source, layer)
+    if (edit := source.text_edit(layer)) is not None:
         found = _edited(source, glyphs, digits, edit, dry)
         if not dry and (found.names or copy is not None):
             write_whole(str(copy or source.path), edit.text(), durable=True)
@@ -127,9 +130,9 @@ def write_back(
         return _edited(source, glyphs, digits, _UfoEdit(_copied(source, partial), partial, layer), dry)
 
 
-def _copied(source: Ufo | Designspace, folder: Path) -> Path:
+def _copied(source: EditableSource, folder: Path) -> Path:
     """Copy a source's files; returns the folder that ``folder`` is a copy of."""
-    if isinstance(source, Ufo):
+    if source.path.is_dir():
         shutil.copytree(source.path, folder, symlinks=True)
         return source.path
     paths = [path.absolute() for path in (source.path, *source.folders)]
@@ -144,9 +147,7 @@ def _copied(source: Ufo | Designspace, folder: Path) -> Path:
     return root
 
 
-def _edited(
-    source: Ufo | Designspace, glyphs: Iterable[New], digits: int, edit: _UfoEdit | _GlyphsEdit, dry: bool
-) -> Written:
+def _edited(source: EditableSource, glyphs: Iterable[New], digits: int, edit: Edit, dry: bool) -> Written:
     found = Written()
     for new in glyphs:
         changes, stays = _changes(source, new, digits, edit)
@@ -162,7 +163,7 @@ def _edited(
 
 
 def _changes(
-    source: Ufo | Designspace, new: New, digits: int, edit: _UfoEdit | _GlyphsEdit
+    source: EditableSource, new: New, digits: int, edit: Edit
 ) -> tuple[list[dict[int, list[Node]]], list[tuple[int, int, str]]]:
     """By drawing, the contours that change and their nodes; and numbers of contours that stay, and why.
 
@@ -187,7 +188,7 @@ def _changes(
     return (changes if any(changes) else []), stays
 
 
-class _UfoEdit:
+class _UfoEdit(Edit):
     """Glyphs of UFOs at ``root``, or of their copies in another folder.
 
     Files are written at the end of each glyph, so that an interrupted run leaves whole files.
@@ -280,64 +281,3 @@ class _Folder:
         if self.layer not in dict(self.layers):
             layers = [*self.layers, [str(self.layer), self.path.name]]
             write_whole(str(self.ufo / "layercontents.plist"), plistlib.dumps(layers))
-
-
-class _GlyphsEdit:
-    """Glyphs of a Glyphs file: its text, and what is put in the place of what."""
-
-    def __init__(self, source: GlyphsFile, layer: str | None) -> None:
-        self.file, self.layer = GlyphsText(source.path.read_text(encoding="utf-8")), layer
-        self.masters = source.master_ids(self.file.masters)
-        self._edits: list[tuple[int, int, str]] = []
-
-    def _layer(self, drawing: Drawing, name: str) -> Layer:
-        master, place = self.masters[drawing.ufo], _place(drawing.layer)
-        return next(each for each in self.file.layers(name) if (each.master, _place(each.place)) == (master, place))
-
-    def drawn(self, drawing: Drawing, name: str) -> Drawn:
-        """What a glyph draws itself."""
-        layer = self._layer(drawing, name)
-        return [self.file.nodes(path) for path in layer.paths], layer.anchors
-
-    def put(self, drawing: Drawing, name: str, nodes: Mapping[int, Sequence[Node]]) -> None:
-        """Put new nodes into some of a glyph's contours."""
-        layer = self._layer(drawing, name)
-        edits = [(layer.paths[k], self.file.written(layer.paths[k], new)) for k, new in nodes.items()]
-        spans = [(path.start, path.stop, text) for path, text in edits]
-        if self.layer is None:
-            self._edits += spans
-            return
-        title = self.layer if not drawing.layer else f"{self.layer} {_place(drawing.layer)}"
-        start, text = layer.value.start, self.file.text[layer.value.start : layer.value.stop]
-        drop = [layer.value.of[key] for key in ("layerId", "associatedMasterId", "name") if key in layer.value.of]
-        keyed = [(text.rfind("\n", 0, v.start - start) + 1, text.find(";", v.stop - start) + 1, "") for v in drop]
-        own = uuid.uuid5(uuid.NAMESPACE_URL, f"{name}/{layer.master}/{title}")
-        head = f'\nassociatedMasterId = "{layer.master}";\nlayerId = "{str(own).upper()}";\nname = "{title}";\n'
-        copied = _with(text, [(a - start, b - start, new) for a, b, new in spans] + keyed + [(1, 1, head)])
-        others = [each for each in self.file.layers(name) if each.master == layer.master and each.place is None]
-        there = [each.value for each in others if each.name == title]
-        if there:
-            self._edits.append((there[0].start, there[0].stop, copied))
-        else:
-            self._edits.append((layer.value.stop, layer.value.stop, f",\n{copied}"))
-
-    def finish(self) -> None:
-        """Nothing: the file is written once."""
-
-    def text(self) -> str:
-        """The file's text with all edits."""
-        return _with(self.file.text, self._edits)
-
-
-def _with(text: str, edits: Iterable[tuple[int, int, str]]) -> str:
-    """A text with others in the place of some stretches."""
-    parts, at = list[str](), 0
-    for start, stop, new in sorted(edits):
-        parts += [text[at:start], new]
-        at = stop
-    return "".join([*parts, text[at:]])
-
-
-def _place(name: str | None) -> str:
-    """The coordinates in the name of a layer between masters, without spaces; "" for a master's own."""
-    return "" if not name else "".join(name[name.find("{") : name.rfind("}") + 1].split())

@@ -19,9 +19,8 @@ from fontTools.ttLib import TTFont
 from ....errors import GlyphsplineError
 from ....outlines.masters import MasterContour, Masters
 from ....types import FloatArray, IntArray
-from ...masters.variable_font import CharStrings2, blend
 from ..tables.font_glyphs import FINE, on_grid, put_string
-from ..tables.master_deltas import order_of
+from ..tables.master_deltas import blend, order_of, regions_of
 from .programs import Command, Program
 from .stored import NEAR, OTHERWISE, REGIONS, Stored, matched
 
@@ -41,7 +40,7 @@ class CharStringContours(Stored):
         self._name, self._glyph, self._is_cff2 = name, glyph, "CFF2" in font
         self._strings = char_strings(font)
         self._program = program = Program(self._strings[name])
-        regions = CharStrings2(font).regions[program.vsIndex] if program.numRegions else []
+        regions = regions_of(font)[program.vsIndex] if program.numRegions else []
         order, self._read = order_of(regions, glyph) if regions else [], list[Read]()
         try:
             self._commands, self._spans = program.commands(len(regions))

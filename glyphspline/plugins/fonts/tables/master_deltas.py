@@ -1,103 +1,21 @@
-"""The glyphs of a variable font that are drawn anew, and their points as a font stores them: a default and deltas."""
+"""The points of glyphs in several masters as fonts store them: a default, and a delta for each region."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from math import inf
 from typing import Any
 
 import numpy as np
+from fontTools.ttLib import TTFont
 
-from ....curves.integrals import area
 from ....errors import GlyphsplineError
-from ....outlines.masters import MasterContour, Masters
-from ....readers.pens import ContourPen
-from ....types import BoolArray, FloatArray, IntArray, counted
-from .font_glyphs import LIMIT, Flavour
+from ....outlines.masters import Masters
+from ....types import FloatArray, IntArray
+from .font_glyphs import LIMIT
 
-
-@dataclass(frozen=True, eq=False)
-class Redrawn:
-    """A glyph's new contours in all its masters.
-
-    Attributes:
-        masters: the glyph as the font has it. Its K masters and their regions are those of ``contours``.
-        contours: the new ones.
-        inner: for each contour (m,) whether segment j begins inside an arc, where the curve is to stay smooth; False
-            at the ends of arcs and lines.
-        bounds: for each contour its certified distance from its source. If they are given, arcs are compared with the
-            source, and stay as the font has them where the new ones would turn a joint that the source does not turn.
-        numbers: with ``bounds``, for each contour that of its source in ``masters``.
-        fewest: with ``bounds``, arcs also stay as they are where new ones would need more points.
-        tally: see :class:`StoredGlyph`, of contours that are as ``glyf`` stores them: quadratics, those at ``inner``
-            joints beginning midway between control points; or the source's own. Else None.
-
-    Raises:
-        ValueError: the numbers of masters, contours or segments do not agree.
-    """
-
-    masters: Masters
-    contours: tuple[MasterContour, ...]
-    inner: tuple[BoolArray, ...]
-    bounds: tuple[float, ...] = ()
-    numbers: tuple[int, ...] = ()
-    fewest: bool = False
-    tally: IntArray | None = None
-
-    def __post_init__(self) -> None:
-        if len(self.contours) != len(self.inner):
-            raise ValueError(f"{counted(len(self.contours), 'contour')}, but joints of {len(self.inner)}")
-        if self.bounds and not len(self.bounds) == len(self.numbers) == len(self.contours):
-            raise ValueError(f"{counted(len(self.contours), 'contour')}, but bounds of {len(self.bounds)}")
-        for contour, inner in zip(self.contours, self.inner, strict=True):
-            points, degrees = contour.points, contour.degrees
-            if points.shape != (len(self.masters), int(degrees.sum()), 2) or inner.shape != degrees.shape:
-                raise ValueError(f"{counted(len(self.masters), 'master')}, but points {points.shape}")
-
-
-@dataclass(frozen=True, eq=False)
-class StoredGlyph:
-    """A glyph as a font stores it.
-
-    Attributes:
-        inner: for each contour (m,) whether segment j begins inside an arc; in glyf, at an implied point.
-        distance: certified bound of the largest distance from the contours that were given, in font units, at any
-            location. bound: of that from the source; None if no bounds were given.
-        tally: (3, 2) before and after: points, in glyf as stored, in CFF2 lines and curves; joints that ``check``
-            reports along the axes and in masters; and those of them that turn more between masters than in them. None
-            likewise.
-    """
-
-    inner: tuple[BoolArray, ...]
-    distance: float
-    bound: float | None = None
-    tally: IntArray | None = None
-
-
-def displaced(found: Masters, drawn: Masters) -> float:
-    """How far the points of a glyph, as it was read, are at most from those that were to be drawn, at any location.
-
-    Infinite where it has other segments; those of no length do not count.
-    """
-    pen, corners = ContourPen(masters=len(drawn)), drawn.grid()
-    for contour in drawn.contours:
-        pen.contour(contour.points, contour.degrees)
-    far, weights = 0.0, (found.weights_at(corners), drawn.weights_at(corners))
-    if [each.degrees.tolist() for each in pen.stacks] != [each.degrees.tolist() for each in found.contours]:
-        return inf
-    for both in zip(found.contours, pen.stacks, strict=True):
-        # Between the corners of the grid points are convex combinations of those there, and so are their distances.
-        here, there = (np.tensordot(w, contour.points, axes=1) for w, contour in zip(weights, both, strict=True))
-        far = max(far, float(np.linalg.norm(here - there, axis=2).max()))
-    return far
-
-
-def bound_of(glyph: StoredGlyph, redrawn: Redrawn) -> float:
-    """A bound of a stored glyph's distance from its source. Where its arcs were not compared with the source, what is
-    certified and how far it is stored add up.
-    """
-    return max(redrawn.bounds, default=0.0) + glyph.distance if glyph.bound is None else glyph.bound
+PARTS = 1 << 16
+"""Parts of a unit to which CFF2 has coordinates. The format's numbers are 16.16, so that such fractions, and sums of
+them, are exact. Any fraction takes five bytes."""
 
 
 def rounded_deltas(masters: Masters, points: FloatArray, parts: int) -> IntArray:
@@ -161,16 +79,18 @@ def axes_of(tags: Iterable[str], region: Sequence[Sequence[float]]) -> dict[str,
     return {tag: tuple(three) for tag, three in zip(tags, region, strict=True) if three[1]}
 
 
-def oriented(new: Redrawn, flavour: Flavour) -> Redrawn:
-    """The glyph with ink to the right of its contours in the default, as TrueType has it, or to their left.
+def regions_of(font: TTFont) -> list[list[FloatArray]]:
+    """The regions (A, 3) of every item of the variation store of ``CFF2``."""
+    top = font["CFF2"].cff.topDictIndex[0]
+    if "VarStore" not in top.rawDict:
+        return []
+    store, axes = top.VarStore.otVarStore, font["fvar"].axes
+    supports = [region.get_support(axes) for region in store.VarRegionList.Region]
+    regions = [np.array([support.get(axis.axisTag, (0, 0, 0)) for axis in axes]) for support in supports]
+    return [[regions[index] for index in data.VarRegionIndex] for data in store.VarData]
 
-    Quadratics are not compared with the source's, which are others: their bounds are none.
-    """
-    if flavour == "ttf" and new.tally is None:
-        new = Redrawn(new.masters, new.contours, new.inner)
-    total = sum(area(contour.cubics()[0]) for contour in new.contours)
-    if (total >= 0) == (flavour == "otf") or total == 0:
-        return new
-    masters = replace(new.masters, contours=[contour.reversed() for contour in new.masters.contours], repeats=None)
-    inner = tuple(np.roll(joints[::-1], 1) for joints in new.inner)
-    return replace(new, masters=masters, contours=tuple(c.reversed() for c in new.contours), inner=inner)
+
+def blend(column: list[float]) -> Any:
+    """A number, or a list of a default, deltas and 1, which the specialiser takes for a blend; in parts of a unit."""
+    values = [round(value) if abs(value - round(value)) < 1e-5 else round(value * PARTS) / PARTS for value in column]
+    return [*values, 1] if any(values[1:]) else values[0]

@@ -14,13 +14,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from ....outlines.flaws.kinds import THRESHOLDS
-from ....outlines.flaws.turns import joint_controls, turns_of
-from ....outlines.masters import MasterContour, Masters
-from ....types import BoolArray, FloatArray, IntArray
-from ...masters.kinks import kinks_along
-from ...masters.on_axes import kinks_of
-from .master_deltas import Redrawn
+from ...outlines.flaws.kinds import THRESHOLDS
+from ...outlines.flaws.turns import joint_controls, turns_of
+from ...outlines.masters import MasterContour, Masters
+from ...types import BoolArray, FloatArray, IntArray
+from .kinks import kinks_along
+from .on_axes import kinks_of
+from .redrawn import Redrawn
 
 NEAR = 1e-3
 """Distance in font units up to which points are one: curves come back from their fit as exact as numbers are."""

@@ -15,10 +15,10 @@ from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables.TupleVariation import compileTupleVariationStore
 
 import glyphspline as gs
-from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.plugins.fonts import ufo_folder
 from glyphspline.plugins.fonts.back import nodes
 from glyphspline.plugins.fonts.fit import points as font_points
+from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.plugins.fonts.tables import font_file, font_glyphs
 from glyphspline.plugins.fonts.tables.font_file import FontSummary, to_font
 from glyphspline.plugins.fonts.tables.font_glyphs import Flavour
@@ -29,7 +29,6 @@ from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.folder import MANIFEST, entries_of
 from glyphspline.runs.schedule import InProcess
-from glyphspline.runs.spec import RunSpec
 from scripts.bounds import FACES, SINGLE, part_of, written
 from scripts.survey import faces
 from tests.farthest import cubics, farthest
@@ -37,8 +36,8 @@ from tests.places import FONTS
 from tests.variable_fonts import quadratic
 from tests.variable_fonts import variable_font as built
 
-G2, C2, SMOOTH = gs.Options(**FOR_FONTS), gs.Options(), gs.Options(corners="smooth")
-GLYF = "glyphspline.writers.font.variable_glyf"
+G2, C2, SMOOTH = gs.Options(continuity="g2"), gs.Options(), gs.Options(corners="smooth")
+GLYF = "glyphspline.plugins.fonts.tables.variable_glyf"
 FAR = 7.0
 """Units by which what is written is wrong here."""
 
@@ -85,7 +84,7 @@ def test_variable_glyphs_are_within_their_bounds_at_all_corners(
 
 def masters_of(font: gs.Font, kind: str, options: gs.Options, out: Path) -> tuple[Path, dict[str, Any]]:
     """A font written in all masters, and what the manifest has of its glyphs."""
-    convert_font_masters([font], font.glyph_names, out, RunSpec(options, (kind,), masters=True), InProcess())
+    convert_font_masters([font], font.glyph_names, out, RefitSpec(options, (kind,), masters=True), InProcess())
     (made,) = out.glob(f"*.{kind}")
     return made, {entry["glyph"]: entry["stored"] for entry in entries_of(out) if entry["stored"]}
 
@@ -214,8 +213,8 @@ def test_a_ufo_that_is_written_wrong_is_found(monkeypatch: pytest.MonkeyPatch, t
         assert not any(facts["within_tolerance"] for facts in stored_ufo(ufo, names, tmp_path / f"back{number}", **how))
 
 
-def stored_ufo(source: Source, names: Any, out: Path, formats: Any = ("svg",), **how: Any) -> list[dict[str, Any]]:
-    summary = convert_font(source, names, out, RunSpec(C2, formats, **how), jobs=0)
+def stored_ufo(source: Source, names: Any, out: Path, formats: Any = (), **how: Any) -> list[dict[str, Any]]:
+    summary = convert_font(source, names, out, RefitSpec(C2, formats, **how), jobs=0)
     found = [next(iter(entry["stored"].values())) for entry in entries_of(out)]
     assert summary.undone == (not all(facts["within_tolerance"] for facts in found))
     assert summary.undone == any("may be beyond the tolerance: A, B" in remark for remark in summary.remarks)
@@ -225,7 +224,7 @@ def stored_ufo(source: Source, names: Any, out: Path, formats: Any = ("svg",), *
 def test_curves_of_a_ufo_that_are_rounded_twice_are_within_the_tolerance(tmp_path: Path) -> None:
     font = open_font(FONTS / "kouzan-gyosho.otf")
     options = gs.Options(precision=1)
-    summary = convert_font(font, font.glyph_names, tmp_path, RunSpec(options, ("otf", "ufo")), jobs=0)
+    summary = convert_font(font, font.glyph_names, tmp_path, RefitSpec(options, ("otf", "ufo")), jobs=0)
     assert not summary.undone
     ufo = Ufo.opened(tmp_path / "KouzanGyoshoSubset-spline.ufo")
     tables = TTFont(FONTS / "kouzan-gyosho.otf")
@@ -308,7 +307,7 @@ def test_where_regions_overlap_rounding_counts_at_every_corner(tmp_path: Path) -
 
 def test_the_manifest_has_the_bounds_however_often_a_run_goes_on(tmp_path: Path) -> None:
     font, path = open_font(FONTS / "kouzan-gyosho.otf"), tmp_path / MANIFEST
-    spec = RunSpec(G2, ("ttf", "otf"))
+    spec = RefitSpec(G2, ("ttf", "otf"))
     summary = convert_font(font, font.select(text="AB"), tmp_path, spec, jobs=0)
     assert not summary.undone
     convert_font(font, font.select(text="ABO"), tmp_path, spec, jobs=0)
@@ -323,7 +322,7 @@ def test_the_manifest_has_the_bounds_however_often_a_run_goes_on(tmp_path: Path)
 def test_a_ttf_that_cannot_be_within_the_tolerance_is_said_to_be_beyond(tmp_path: Path) -> None:
     font = open_font(FONTS / "kouzan-gyosho.otf")
     summary = convert_font(
-        font, font.select(text="O"), tmp_path, RunSpec(gs.Options(**FOR_FONTS, tolerance=0.01), ("ttf",)), jobs=0
+        font, font.select(text="O"), tmp_path, RefitSpec(gs.Options(continuity="g2", tolerance=0.01), ("ttf",)), jobs=0
     )
     (entry,) = entries_of(tmp_path)
     assert entry["stored"]["ttf"]["bound"] > 0.01

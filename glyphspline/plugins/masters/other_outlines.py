@@ -21,17 +21,18 @@ from fontTools.ttLib.tables._g_l_y_f import Glyph
 from fontTools.varLib.builder import buildVarData, buildVarRegionList, buildVarStore
 from fontTools.varLib.hvar import add_HVAR
 
-from ....errors import GlyphsplineError
-from ....outlines.masters import Masters
-from ....readers import Font
-from ....readers.source import reusing
-from ....types import MadeOnDemand
-from ...masters.new_variable_font import add_advances, opened
-from ...masters.variable_font import VariableSummary, to_variable_font
-from .font_file import HINTS, become, drop
-from .font_glyphs import Flavour
-from .master_deltas import Redrawn, axes_of, bound_of, oriented, region_key
+from ...errors import GlyphsplineError
+from ...outlines.masters import Masters
+from ...readers import Font
+from ...readers.source import reusing
+from ...types import MadeOnDemand
+from ..fonts.tables.font_file import HINTS, become, drop
+from ..fonts.tables.font_glyphs import Flavour
+from ..fonts.tables.master_deltas import axes_of, region_key
+from .new_variable_font import add_advances, opened
 from .quadratic_contours import unchanged
+from .redrawn import Redrawn, bound_of, oriented
+from .variable_font import VariableSummary, to_variable_font
 
 log = logging.getLogger("glyphspline")
 

@@ -12,9 +12,7 @@ from fontTools.ttLib import TTFont
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.cli.groups import for_fonts
 from glyphspline.curves.cubics import hidden_extrema, turns
-from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.fitting.sharp.corners import find_joints
 from glyphspline.fitting.sharp.settings import EFFORTS
 from glyphspline.outlines.contour_arrays import ContourArrays
@@ -37,7 +35,7 @@ from glyphspline.types import FloatArray
 from tests.places import FONTS, GYOSHO
 
 TEXT = "永龍好書山河風月草花鳥"
-OPTIONS = gs.Options(**FOR_FONTS)
+OPTIONS = gs.Options(continuity="g2")
 
 
 def outlines(file: Path, text: str = TEXT) -> list[gs.Outline]:
@@ -89,7 +87,7 @@ def oval(out: float, back: float) -> gs.Contour:
 def test_curvatures_are_made_to_meet_at_points_that_stay_where_letters_have_them() -> None:
     source = oval(290.0, 262.0)
     assert jumps(source.cubics(), 1000.0) == 4
-    (found,) = gs.convert(gs.Outline("o", contours=(source,)), gs.Options(**FOR_FONTS, tolerance=3.0)).contours
+    (found,) = gs.convert(gs.Outline("o", contours=(source,)), gs.Options(continuity="g2", tolerance=3.0)).contours
     curve = found.curve
     assert jumps(curve.cubics(), 1000.0) == 0
     assert len(curve) == 4
@@ -138,7 +136,9 @@ def test_jumps_of_curvature_that_may_stay_move_nothing() -> None:
 
 
 def test_what_is_good_stays_to_the_byte_with_its_first_point() -> None:
-    good = gs.convert(gs.Outline("o", contours=(oval(290.0, 262.0),)), gs.Options(**FOR_FONTS, tolerance=3.0)).contours
+    good = gs.convert(
+        gs.Outline("o", contours=(oval(290.0, 262.0),)), gs.Options(continuity="g2", tolerance=3.0)
+    ).contours
     square = gs.Contour(np.array([[0.0, 0], [100, 0], [100, 100], [0, 100]]), np.ones(4, dtype=np.int64))
     again = gs.convert(gs.Outline("o", contours=(good[0].curve, square)), OPTIONS)
     for source, result in zip((good[0].curve, square), again.contours, strict=True):
@@ -275,31 +275,6 @@ def test_fonts_are_written_as_they_are_fitted(tmp_path: Path) -> None:
             assert sum(map(curves_in, again.contours)) <= sum(map(curves_in, outline.contours)) or flavour == "ttf"
             if flavour == "ttf":
                 assert len(written["glyf"][name].coordinates) <= len(source["glyf"][name].coordinates)
-
-
-@pytest.mark.parametrize(
-    ("given", "expected"),
-    [
-        ({"formats": "otf"}, True),
-        ({"formats": "ufo, ttf", "preset": "type", "corners": "sharp"}, True),
-        ({"formats": "svg,otf"}, False),
-        ({"formats": "svg,otf", "continuity": "g2"}, True),
-        ({"formats": "otf", "continuity": "c2"}, False),
-        ({"formats": "otf", "corners": "smooth"}, False),
-        ({"formats": "ttf", "step": "20"}, False),
-        ({"formats": "ttf", "masters": True}, True),
-        ({"formats": "ttf,otf", "masters": True}, False),
-        ({"formats": "ttf", "axis": "wght=1:2"}, False),
-        ({"formats": "otf,ufo", "masters": True}, True),
-        ({"in_place": True, "masters": True}, True),
-        ({"layer": "new"}, True),
-        ({"layer": "new", "formats": "svg"}, False),
-        ({"formats": "svg"}, False),
-        ({}, False),
-    ],
-)
-def test_fonts_alone_have_their_own_defaults(given: dict[str, object], expected: bool) -> None:
-    assert for_fonts(given) == (FOR_FONTS if expected else {})
 
 
 def test_quadratics_that_stay_are_cubics_of_the_same_shape() -> None:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ....errors import FontError
-from .nodes import Node, Position
+from ...errors import FontError
+from ..fonts.back.nodes import Node, Position
 
 TOKEN = re.compile(r'\s*(?:([{}()=;,])|("(?:[^"\\]|\\.)*")|(<[^>]*>)|([^\s{}()=;,"]+))', re.DOTALL)
 

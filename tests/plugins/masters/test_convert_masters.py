@@ -22,14 +22,13 @@ from glyphspline.curves.cubics import turns
 from glyphspline.curves.pairing import pair_instances
 from glyphspline.curves.slip import regular
 from glyphspline.fitting.measures import geometry
-from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
 from glyphspline.outlines.outline import Contours
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
-from glyphspline.plugins.fonts.ufo_folder import write_designspace
 from glyphspline.plugins.masters.convert_masters import MastersContourResult, changes_at
-from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.job import STORED, redrawn_glyph
+from glyphspline.plugins.masters.new_designspace import write_designspace
 from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
+from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.plugins.masters.single_fonts import masters_of_fonts
 from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.readers import Font
@@ -133,7 +132,7 @@ def kinks(cubics: FloatArray, lines: BoolArray) -> int:
 def test_masters_as_fonts_store_them_have_fewer_curves_and_no_new_kink_at_any_location() -> None:
     before = after = 0
     for _, masters in brush("永好"):
-        result = gs.convert_masters(masters, gs.Options(**FOR_FONTS))
+        result = gs.convert_masters(masters, gs.Options(continuity="g2"))
         for contour in result.contours:
             assert contour.within_tolerance
             np.testing.assert_array_equal(contour.curve.points, np.rint(contour.curve.points))
@@ -149,8 +148,8 @@ def test_masters_as_fonts_store_them_have_fewer_curves_and_no_new_kink_at_any_lo
 
 def test_one_master_gets_the_curves_of_its_outline() -> None:
     for outline, _ in brush("永"):
-        result = gs.convert_masters(Masters.of(outline), gs.Options(**FOR_FONTS))
-        plain = gs.convert(outline, gs.Options(**FOR_FONTS))
+        result = gs.convert_masters(Masters.of(outline), gs.Options(continuity="g2"))
+        plain = gs.convert(outline, gs.Options(continuity="g2"))
         for one, other in zip(result.contours, plain.contours, strict=True):
             np.testing.assert_array_equal(one.curve.points[0], other.curve.points)
             assert one.deviation_bound == other.measures.deviation_bound
@@ -158,7 +157,7 @@ def test_one_master_gets_the_curves_of_its_outline() -> None:
 
 def test_masters_that_agree_are_stored_alike() -> None:
     points = np.rint(oval(200, 350, 0.5))
-    result = gs.convert_masters(masters_of(points, points), gs.Options(**FOR_FONTS, tolerance=5.0))
+    result = gs.convert_masters(masters_of(points, points), gs.Options(continuity="g2", tolerance=5.0))
     curve = result.contours[0].curve
     np.testing.assert_array_equal(curve.points[0], curve.points[1])
 
@@ -313,14 +312,14 @@ def test_errors_say_what_is_wrong() -> None:
 
 def test_a_stored_result_is_read_back_as_it_was() -> None:
     result = gs.convert_masters(OVALS)
-    again = from_text(to_text(result), gs.MastersResult)
+    again = from_text(to_text(result), gs.MastersResult, STORED)
     np.testing.assert_array_equal(again.contours[0].curve.points, result.contours[0].curve.points)
     assert again.contours[0].inner.dtype == np.bool_
     assert repr(again) == repr(result)
 
 
 def test_the_command_writes_a_variable_font_and_a_designspace(tmp_path: Path) -> None:
-    call = ["convert", str(CFF2), "--masters", "--all", "--corners", "sharp", "--format", "otf,ufo", "--jobs", "0"]
+    call = ["refit", str(CFF2), "--masters", "--all", "--corners", "sharp", "--format", "otf,ufo", "--jobs", "0"]
     done = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
     assert done.exit_code == 0, done.output
     lines = [json.loads(line) for line in (tmp_path / "out" / "manifest.jsonl").read_text().splitlines()]
@@ -345,21 +344,27 @@ def test_single_fonts_become_a_variable_one(tmp_path: Path) -> None:
     source = FONTS / "variable.ttf"
     for value in (400, 900):
         instantiateVariableFont(TTFont(source), {"wght": value}).save(tmp_path / f"{value}.ttf")
-    call = ["convert", str(tmp_path / "400.ttf"), "--from", str(tmp_path / "900.ttf"), "--axis", "wght=400:900"]
-    call += ["--masters", "--glyphs", "o,stem,space", "--corners", "sharp", "--format", "ttf,ufo", "--jobs", "0"]
-    done = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "out")])
-    assert done.exit_code == 0, done.output
-    font = gs.open_font(next((tmp_path / "out").glob("*.ttf")), location={"wght": 900})
-    bold = gs.open_font(source, location={"wght": 900})
-    for name in ("o", "stem", "space"):
-        assert font.outline(name).advance == bold.outline(name).advance
-    ours, theirs = (np.concatenate([c.cubics() for c in f.outline("o").contours]) for f in (font, bold))
-    assert apart(ours, theirs) < 1.5
-    assert list((tmp_path / "out").rglob("*.designspace"))
+    call = ["refit", str(tmp_path / "400.ttf"), str(tmp_path / "900.ttf"), "--axis", "wght=400:900"]
+    call += ["--glyphs", "o,stem,space", "--jobs", "0"]
+    for more in ([], ["--format", "ttf,ufo", "--continuity", "c2"]):
+        out = tmp_path / f"out{len(more)}"
+        done = CliRunner().invoke(app, [*call, "--out", str(out), *more])
+        assert done.exit_code == 0, done.output
+        font = gs.open_font(next(out.glob("*.ttf")), location={"wght": 900})
+        bold = gs.open_font(source, location={"wght": 900})
+        for name in ("o", "stem", "space"):
+            assert font.outline(name).advance == bold.outline(name).advance
+        ours, theirs = (np.concatenate([c.cubics() for c in f.outline("o").contours]) for f in (font, bold))
+        assert apart(ours, theirs) < 1.5
+        assert bool(list(out.rglob("*.designspace"))) == bool(more)
+    refused = CliRunner().invoke(app, [*call, "--out", str(tmp_path / "both"), "--format", "ttf,ufo"])
+    assert refused.exit_code == 2
+    assert "--continuity c2" in refused.output + (refused.stderr if refused.stderr_bytes else "")
 
 
 def test_the_default_master_is_drawn_and_a_page_has_all(tmp_path: Path) -> None:
-    call = ["convert", str(CFF2), "--masters", "--glyphs", "o,space", "--out", str(tmp_path), "--jobs", "0"]
+    call = ["refit", str(CFF2), "--masters", "--glyphs", "o,space", "--out", str(tmp_path), "--jobs", "0"]
+    call += ["--format", "svg,curvature,gallery", "--continuity", "c2"]
     assert CliRunner().invoke(app, call).exit_code == 0
     result = gs.convert_masters(gs.open_font(CFF2).masters("o"))
     contours = result.instance({}).contours
@@ -380,10 +385,10 @@ def test_the_default_master_is_drawn_and_a_page_has_all(tmp_path: Path) -> None:
 
 
 def test_masters_refuse_formats_that_are_not_theirs(tmp_path: Path) -> None:
-    call = ["convert", str(CFF2), "--masters", "--all", "--format", "parquet", "--out", str(tmp_path / "out")]
+    call = ["refit", str(CFF2), "--masters", "--all", "--format", "parquet", "--out", str(tmp_path / "out")]
     done = CliRunner().invoke(app, [*call, "--jobs", "0"])
     assert done.exit_code == 2
-    assert "not parquet" in done.output + (done.stderr if done.stderr_bytes else "")
+    assert "glyphspline convert FONT --format parquet" in done.output + (done.stderr if done.stderr_bytes else "")
 
 
 @pytest.fixture(scope="module")
@@ -398,8 +403,8 @@ def weights_of_blobs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Pa
 
 
 def from_call(light: Path, bold: Path, out: Path, glyphs: str) -> list[str]:
-    call = ["convert", str(light), "--from", str(bold), "--axis", "wght=400:900", "--masters", "--glyphs", glyphs]
-    return [*call, "--corners", "sharp", "--format", "ttf", "--jobs", "0", "--out", str(out)]
+    call = ["refit", str(light), str(bold), "--axis", "wght=400:900", "--glyphs", glyphs]
+    return [*call, "--format", "ttf", "--jobs", "0", "--out", str(out)]
 
 
 def test_a_run_over_single_fonts_is_resumed_and_refused_if_one_of_them_changed(
@@ -411,7 +416,7 @@ def test_a_run_over_single_fonts_is_resumed_and_refused_if_one_of_them_changed(
     run = json.loads((out / "run.json").read_text())
     assert run["axis"] == "wght=400:900"
     assert [font["sha256"] for font in run["from"]] == [gs.open_font(bold).sha256]
-    assert "--from 900.ttf --axis wght=400:900" in run["command"]
+    assert "refit 400.ttf 900.ttf --axis wght=400:900" in run["command"]
     first = (out / "results" / "o.json").stat()
     again = CliRunner().invoke(app, from_call(light, bold, out, "o,stem"))
     assert again.exit_code == 0, again.output
@@ -428,7 +433,7 @@ def test_a_run_over_single_fonts_is_resumed_and_refused_if_one_of_them_changed(
 
 
 def masters_call(out: Path, glyphs: str, *more: str) -> list[str]:
-    call = ["convert", str(CFF2), "--masters", "--glyphs", glyphs, "--corners", "sharp", "--format", "otf"]
+    call = ["refit", str(CFF2), "--masters", "--glyphs", glyphs, "--corners", "sharp", "--format", "otf"]
     return [*call, "--jobs", "0", "--out", str(out), *more]
 
 
@@ -440,7 +445,7 @@ def manifest_of(out: Path) -> dict[str, Any]:
 def test_a_run_goes_on_with_its_glyphs_and_a_restart_has_none_of_the_old_results(tmp_path: Path) -> None:
     def first_points(name: str) -> FloatArray:
         text = (tmp_path / "results" / f"{name}.json").read_text()
-        return from_text(text, gs.MastersResult).contours[0].curve.points
+        return from_text(text, gs.MastersResult, STORED).contours[0].curve.points
 
     smooth = ("--corners", "smooth")
     assert CliRunner().invoke(app, masters_call(tmp_path, "o", *smooth)).exit_code == 0
@@ -487,10 +492,10 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
     [
         (["--location", "wght=600"], "--location is not for --masters"),
         (["--scheduler", "tcp://localhost:1"], "--scheduler is not for --masters"),
-        (["--axis", "wght=400:900"], "go together"),
-        (["--from", str(CFF2)], "go together"),
-        (["--from", str(CFF2), "--axis", "wght=400"], "an axis is like"),
-        (["--continuity", "g2", "--format", "ttf,otf"], "beside otf"),
+        (["--axis", "wght=400:900"], "one font has masters of its own"),
+        ([str(CFF2)], "become masters on --axis"),
+        ([str(CFF2), "--axis", "wght=400", "--format", "ttf"], "an axis is like"),
+        (["--format", "ttf,otf"], "--continuity c2"),
     ],
 )
 def test_options_that_clash_with_masters_are_refused(more: list[str], said: str, tmp_path: Path) -> None:
@@ -500,20 +505,13 @@ def test_options_that_clash_with_masters_are_refused(more: list[str], said: str,
     assert not (tmp_path / "out" / "run.json").exists()
 
 
-def test_an_axis_alone_is_refused_without_masters_too(tmp_path: Path) -> None:
-    call = ["convert", str(CFF2), "--glyphs", "o", "--axis", "wght=400:900", "--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(app, [*call, "--jobs", "0"])
-    assert done.exit_code == 2
-    assert "go together" in done.output + (done.stderr if done.stderr_bytes else "")
-
-
 def test_the_summary_of_masters_as_json(tmp_path: Path) -> None:
-    done = CliRunner().invoke(app, masters_call(tmp_path / "out", "o", "--names", "unicode", "--quiet", "--json"))
+    done = CliRunner().invoke(app, masters_call(tmp_path / "out", "o", "--quiet", "--json"))
     assert done.exit_code == 0
     facts = json.loads(done.stdout)
     assert (facts["glyphs"], facts["failed"], facts["outside"]) == (1, {}, [])
     assert 0 < facts["bound"] <= 1
-    assert [path.name for path in (tmp_path / "out" / "results").iterdir()] == ["uni006F.json"]
+    assert [path.name for path in (tmp_path / "out" / "results").iterdir()] == ["o.json"]
     empty = CliRunner().invoke(app, masters_call(tmp_path / "empty", "space", "--quiet", "--json"))
     assert json.loads(empty.stdout)["bound"] is None
 

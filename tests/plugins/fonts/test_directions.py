@@ -80,7 +80,7 @@ def wrong_contours(font: TTFont, sign: int, location: dict[str, float] | None = 
 
 def converted(path: Path, out: Path, *options: str) -> TTFont:
     """The font that the command makes of all glyphs."""
-    run = CliRunner().invoke(app, ["convert", str(path), "--all", "--out", str(out), "-j", "0", "-q", *options])
+    run = CliRunner().invoke(app, ["refit", str(path), "--all", "--out", str(out), "-j", "0", "-q", *options])
     assert run.exit_code in (0, 1), run.output  # 1: a glyph keeps its outline
     (made,) = out.glob("*.?tf")
     return TTFont(made)

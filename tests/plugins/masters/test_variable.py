@@ -21,10 +21,11 @@ from glyphspline import Options, OutputError, convert_masters, open_font
 from glyphspline.curves.integrals import area
 from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.masters import DesignAxis, MasterContour, Masters
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn, as_drawn, rounded_deltas
-from glyphspline.plugins.fonts.tables.other_outlines import to_other_outlines
-from glyphspline.plugins.fonts.ufo_folder import unlike_regions, write_designspace
+from glyphspline.plugins.fonts.tables.master_deltas import as_drawn, rounded_deltas
 from glyphspline.plugins.masters.job import redrawn_glyph
+from glyphspline.plugins.masters.new_designspace import unlike_regions, write_designspace
+from glyphspline.plugins.masters.other_outlines import to_other_outlines
+from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.plugins.masters.variable_font import components, to_variable_font
 from glyphspline.readers import Font
 from glyphspline.types import FloatArray

@@ -23,8 +23,8 @@ from glyphspline.plugins.fonts.tables.font_glyphs import FINE, char_string, on_g
 from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.types import FloatArray, IntArray
 from tests.places import FONTS
+from tests.plugins.mending.test_back_fonts import mend
 from tests.variable_drawings import refitted
-from tests.writers.test_back_fonts import mend
 
 
 def blob(rng: np.random.Generator, kink: float) -> IntArray:

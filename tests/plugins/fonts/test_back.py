@@ -15,12 +15,12 @@ from glyphspline.errors import GlyphsplineError
 from glyphspline.outlines.extrema import with_extrema
 from glyphspline.plugins.fonts.back.glif import Glif
 from glyphspline.plugins.fonts.back.nodes import Node, replaced
+from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.readers import open_source
 from glyphspline.readers.ufo import Ufo
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.schedule import workers
-from glyphspline.runs.spec import RunSpec
 from tests.drawings import circle
 from tests.places import FONTS
 
@@ -101,7 +101,7 @@ def without_points(data: bytes) -> bytes:
     return re.sub(rb"\s*<point [^>]*/>", b"", data)
 
 
-def run(path: Path, out: Path, spec: RunSpec) -> list[str]:
+def run(path: Path, out: Path, spec: RefitSpec) -> list[str]:
     source = open_source(path)
     if not source.axes:
         return convert_font(source, source.glyph_names, out, spec, jobs=0).remarks
@@ -113,7 +113,7 @@ def test_in_place_only_points_of_fitted_contours_change(tmp_path: Path) -> None:
     path = ufo_at(tmp_path / "My.ufo")
     before, source = files(path), Ufo.opened(path)
     old = {name: source.outline(name) for name in source.glyph_names}
-    remarks = run(path, tmp_path / "out", RunSpec(SHARP, formats=("svg",), in_place=True))
+    remarks = run(path, tmp_path / "out", RefitSpec(SHARP, in_place=True))
     after, now = files(path), Ufo.opened(path)
     assert before.keys() == after.keys()
     assert {name for name in before if before[name] != after[name]} == {"glyphs/o.glif", "glyphs/oi.glif"}
@@ -134,7 +134,7 @@ def test_in_place_only_points_of_fitted_contours_change(tmp_path: Path) -> None:
 def test_a_layer_has_the_new_outlines_beside_the_old(tmp_path: Path) -> None:
     path = ufo_at(tmp_path / "My.ufo")
     before = files(path)
-    spec = RunSpec(SHARP, formats=("svg",), layer="glyphspline")
+    spec = RefitSpec(SHARP, layer="glyphspline")
     run(path, tmp_path / "out", spec)
     after = files(path)
     added = {name for name in after if name not in before}
@@ -152,7 +152,7 @@ def test_a_layer_has_the_new_outlines_beside_the_old(tmp_path: Path) -> None:
 def test_the_format_ufo_of_a_ufo_is_a_copy_of_it(tmp_path: Path) -> None:
     path = ufo_at(tmp_path / "My.ufo")
     before = files(path)
-    run(path, tmp_path / "out", RunSpec(SHARP, formats=("ufo",)))
+    run(path, tmp_path / "out", RefitSpec(SHARP, formats=("ufo",)))
     copy = files(tmp_path / "out" / "Mine-spline.ufo")
     assert files(path) == before
     assert copy.keys() == before.keys()
@@ -168,7 +168,7 @@ def test_what_is_fitted_for_fonts_goes_back_point_for_point(tmp_path: Path) -> N
     font.save(tmp_path / "My.ufo")
     options = gs.Options(corners="sharp", continuity="g2", precision=0)
     fitted = gs.convert(Ufo.opened(tmp_path / "My.ufo").outline("a"), options)
-    run(tmp_path / "My.ufo", tmp_path / "out", RunSpec(options, formats=("ufo",)))
+    run(tmp_path / "My.ufo", tmp_path / "out", RefitSpec(options, formats=("ufo",)))
     (copy,) = (tmp_path / "out").glob("*.ufo")
     written = Ufo.opened(copy).outline("a").contours
     assert [len(contour) for contour in written] == [len(contour.curve) for contour in fitted.contours]
@@ -194,7 +194,7 @@ def test_what_no_whole_units_are_near_keeps_its_decimals(tmp_path: Path) -> None
         glif.write_text(re.sub(r'(<point x="-?\d+)"', r'\1.3"', glif.read_text()))
     before = files(tmp_path)
     options = gs.Options(corners="sharp", continuity="g2", precision=0, tolerance=0.1)
-    run(path, tmp_path / "out", RunSpec(options, in_place=True, masters=True))
+    run(path, tmp_path / "out", RefitSpec(options, in_place=True, masters=True))
     assert {name: data for name, data in files(tmp_path).items() if not name.startswith("out/")} == before
 
 
@@ -208,7 +208,7 @@ def test_masters_stay_compatible_and_nothing_else_changes(
     before = open_source(path)
     old = {name: before.masters(name) for name in before.glyph_names}
     text = path.read_text()
-    spec = RunSpec(SHARP, in_place=layer is None, layer=layer, masters=True)
+    spec = RefitSpec(SHARP, in_place=layer is None, layer=layer, masters=True)
     assert "new outlines of 2 glyphs" in run(path, tmp_path / "out", spec)[0]
     now = open_source(path)
     for name, masters in old.items():
@@ -236,10 +236,10 @@ def test_masters_stay_compatible_and_nothing_else_changes(
 
 def test_other_sources_take_nothing_back(tmp_path: Path) -> None:
     with pytest.raises(GlyphsplineError, match="only UFOs, designspaces and Glyphs files"):
-        run(FONTS / "edge-cases.ttf", tmp_path / "out", RunSpec(SHARP, formats=("svg",), in_place=True))
+        run(FONTS / "edge-cases.ttf", tmp_path / "out", RefitSpec(SHARP, in_place=True))
     assert not (tmp_path / "out").exists()
     with pytest.raises(gs.OptionError, match="not both"):
-        RunSpec(in_place=True, layer="x")
+        RefitSpec(in_place=True, layer="x")
 
 
 def test_a_glif_keeps_its_style_and_the_attributes_of_points() -> None:

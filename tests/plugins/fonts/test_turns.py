@@ -13,13 +13,12 @@ from fontTools.ttLib import TTFont
 
 import glyphspline as gs
 from glyphspline.fitting.convert import unfitted
-from glyphspline.fitting.options import FOR_FONTS
 from glyphspline.plugins.fonts.fit.points import quadratic_points
 from glyphspline.plugins.fonts.tables.font_file import write_font
 from tests.rounded_font import rounded_font
 from tests.turns import Turn, new_turns, turns
 
-OPTIONS = gs.Options(**FOR_FONTS)
+OPTIONS = gs.Options(continuity="g2")
 
 NEAR = 1.75
 """Units from a turn of the source: the tolerance of an em of 1,000, and what rounding moves a node by."""

@@ -20,9 +20,9 @@ from glyphspline.curves.integrals import area
 from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.outlines.outline import Contour, Outline
 from glyphspline.plugins.fonts.tables.font_file import to_font
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
-from glyphspline.plugins.fonts.ufo_folder import write_designspace
+from glyphspline.plugins.masters.new_designspace import write_designspace
 from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
+from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.plugins.masters.single_fonts import masters_of_fonts
 from glyphspline.plugins.masters.variable_font import VariableSummary
 from glyphspline.readers import Font, Source

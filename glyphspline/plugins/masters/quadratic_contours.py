@@ -12,12 +12,13 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ....fitting.options import Options
-from ....outlines.masters import MasterContour, Masters, quadratics
-from ....outlines.outline import Contours
-from ....types import BoolArray, FloatArray, IntArray
-from .font_glyphs import FONTS, ROUNDING
-from .master_deltas import Redrawn, as_drawn, rounded_deltas
+from ...fitting.options import Options
+from ...outlines.masters import MasterContour, Masters, quadratics
+from ...outlines.outline import Contours
+from ...types import BoolArray, FloatArray, IntArray
+from ..fonts.tables.font_glyphs import FONTS, ROUNDING
+from ..fonts.tables.master_deltas import as_drawn, rounded_deltas
+from .redrawn import Redrawn
 from .stretches import locations, settle, tally
 
 StoredPoints: TypeAlias = tuple[IntArray, BoolArray]
@@ -51,7 +52,7 @@ def in_quadratics(
         owns: the contours as the font has them, by their numbers in the masters. shift: (K,) from where a master is
             drawn to where it is stored, along x.
     """
-    from ..fit.points import quadratic_contour  # compiles more than others need
+    from ..fonts.fit.points import quadratic_contour  # compiles more than others need
 
     masters, offset = new.masters, shift[:, None, None] * np.array([1.0, 0.0])
     corners = np.unique(masters.weights_at(masters.grid()).round(12), axis=0)

@@ -21,13 +21,13 @@ from glyphspline.outlines.flaws.kinds import KINK, THRESHOLDS
 from glyphspline.outlines.flaws.turns import joint_controls, turns_of
 from glyphspline.outlines.masters import MasterContour, Masters
 from glyphspline.plugins.fonts.tables.font_file import replace_family
-from glyphspline.plugins.fonts.tables.master_deltas import Redrawn
-from glyphspline.plugins.fonts.tables.other_outlines import to_other_outlines
-from glyphspline.plugins.fonts.tables.stretches import ranges_of
 from glyphspline.plugins.masters.convert_masters import convert_masters
 from glyphspline.plugins.masters.job import redrawn_glyph
 from glyphspline.plugins.masters.on_axes import on_axes
+from glyphspline.plugins.masters.other_outlines import to_other_outlines
 from glyphspline.plugins.masters.quadratic_masters import quadratic_masters
+from glyphspline.plugins.masters.redrawn import Redrawn
+from glyphspline.plugins.masters.stretches import ranges_of
 from glyphspline.plugins.masters.variable_font import VariableSummary, to_variable_font
 from glyphspline.readers import Font
 from tests.places import FONTS
@@ -153,7 +153,7 @@ def test_cubics_of_all_masters_become_quadratics_without_a_new_kink(tmp_path: Pa
         data, _ = to_other_outlines(drawn_font(tmp_path, seed), {}, "otf", tolerance=TOLERANCE, rest=TOLERANCE)
         font, out = tmp_path / "cubic.otf", tmp_path / f"out{seed}"
         font.write_bytes(data)
-        call = ["convert", str(font), "--masters", "--all", "--format", "ttf", "--jobs", "0", "--out", str(out)]
+        call = ["refit", str(font), "--masters", "--all", "--format", "ttf", "--jobs", "0", "--out", str(out)]
         assert CliRunner().invoke(app, call).exit_code == 0
         (file,) = out.glob("*.ttf")
         source, result = open_font(font).masters("n"), open_font(file).masters("n")
@@ -277,7 +277,7 @@ def test_arcs_know_what_they_replace() -> None:
 
 def test_what_is_stored_is_as_check_counts_it(tmp_path: Path) -> None:
     font = drawn_font(tmp_path, 2)
-    call = ["convert", str(font.path), "--masters", "--glyphs", "n", "--corners", "sharp", "--effort", "fast"]
+    call = ["refit", str(font.path), "--masters", "--glyphs", "n", "--corners", "sharp", "--effort", "fast"]
     out = tmp_path / "out"
     done = CliRunner().invoke(app, [*call, "--format", "ttf", "--jobs", "0", "--out", str(out)])
     assert done.exit_code == 0
