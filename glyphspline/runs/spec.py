@@ -146,7 +146,7 @@ class RunSpec:
     verb: ClassVar[str] = "convert"
     needs_formats: ClassVar[bool] = True
     unshown: ClassVar[tuple[str, ...]] = (
-        "continuity", "effort", "flatness", "measure", "size", "stroke_width", "thousandths",
+        "continuity", "effort", "flatness", "measure", "stroke_width", "thousandths",
     )  # fmt: skip
 
     def __post_init__(self) -> None:
