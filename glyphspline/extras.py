@@ -10,6 +10,8 @@ from .errors import GlyphsplineError
 
 EXTRAS = {
     "overlaps": ("removing overlaps", "pathops"),
+    "fonts": ("fonts with CFF outlines", "cffsubr"),
+    "text": ("text on lines", "unicode_segmentation_rs"),
     "cad": ("DXF", "ezdxf"),
     "parquet": ("Parquet", "pyarrow"),
     "sources": ("reading Glyphs files", "glyphsLib"),

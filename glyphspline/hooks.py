@@ -40,7 +40,7 @@ class Plugin:
     Attributes:
         commands: of the command line.
         formats: one file a glyph: a :class:`.writers.formats.Format` of that name.
-        whole: one file a font: a :class:`.writers.formats.WholeFormat` of that name.
+        whole: one file a font: a :class:`.runs.whole_formats.WholeFormat` of that name.
         readers: sources: a :class:`.readers.open.Reader`.
         services: functions that the pipeline, or other plug-ins, call if they are there: see ``SERVICES``.
         work: kinds of work: functions without arguments that call all compiled functions of the kind.

@@ -1,4 +1,7 @@
-"""The command line: ``glyphspline convert | dataset | check | diff | atlas | info | report | view | demo | warm``."""
+"""The command line: ``glyphspline convert``, the pipeline's other commands, and those of plug-ins.
+
+In: words of a command line; out: runs, lines of text, an exit status. Read first: :mod:`.app`, then :mod:`.convert`.
+"""
 
 from __future__ import annotations
 

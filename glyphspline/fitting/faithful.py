@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Generic, NamedTuple, TypeVar
@@ -13,6 +13,7 @@ from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import ContourArrays, lines_and_cubics, offsets_of
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, IntArray
+from .first_good import first_good
 from .measures import distance_columns, with_geometry
 from .options import Options
 from .results import ConvertedContours, assembled, not_fitted
@@ -39,62 +40,43 @@ class Fits(NamedTuple):
 
 Result = TypeVar("Result")
 
+Refit = Callable[[list[int]], Iterable[Result]]
+"""From the numbers of contours to other results of these."""
 
-class Search(Generic[Result]):
-    """The search for results that enclose what their sources do, for one outline or for all masters of one.
 
-    Of what is tried for a glyph, the first with the fewest contours outside the tolerance counts, and among these the
-    first with the fewest changes.
+class Trial(NamedTuple, Generic[Result]):
+    """Results of a glyph's contours, and what changed in them: see :data:`.topology.Changes`."""
 
-    Attributes:
-        tried, found: the (C,) results tried last, and what changed in them. best, kept: the same of those that count.
-    """
+    results: Sequence[Result]
+    found: Changes
 
-    def __init__(
-        self, glyphs: IntArray, results: Iterable[Result],
-        compare: Callable[[int, int, Sequence[Result]], Changes], is_outside: Callable[[Result], bool],
-    ) -> None:  # fmt: skip
-        """Begin with first results.
-
-        Args:
-            glyphs: (G + 1,) where the contours of each glyph begin.
-            compare: from a range of contours, a to b - 1, and their results, to what changed in them.
-            is_outside: whether a result is outside the tolerance.
-        """
-        self.glyphs, self.compare, self.is_outside = glyphs, compare, is_outside
-        self.tried = list(results)
-        self.found = compare(0, len(self.tried), self.tried)
-        self.best, self.kept = list(self.tried), self.found.copy()
-
-    def attempt(self, wrong: BoolArray, fit: Callable[[list[int]], Iterable[Result]]) -> None:
-        """Put other results in the place of some contours', and keep what is better for their glyphs."""
-        which = np.flatnonzero(wrong).tolist()
-        if not which:
-            return
-        for c, result in zip(which, fit(which), strict=True):
-            self.tried[c] = result
-        for a, b in self.ranges(which):
-            tried, found = self.tried[a:b], self.compare(a, b, self.tried[a:b])
-            self.found[..., a:b] = found
-            if self._rank(tried, found) < self._rank(self.best[a:b], self.kept[..., a:b]):
-                self.best[a:b] = tried
-                self.kept[..., a:b] = found
-
-    def _rank(self, results: Sequence[Result], found: Changes) -> tuple[int, int]:
-        """Lower is better: the number of results outside the tolerance, then of changes.
+    def wrong(self, is_outside: Callable[[Result], bool]) -> tuple[int, int]:
+        """The number of results outside the tolerance, then of changes.
 
         A crossing of two contours counts twice; crossings that are not counted count as a thousand.
         """
-        return sum(map(self.is_outside, results)), int(np.where(found < 0, 1_000, found).sum())
+        return sum(map(is_outside, self.results)), int(np.where(self.found < 0, 1_000, self.found).sum())
 
-    def go_back(self) -> None:
-        """Go on from the best results."""
-        self.tried, self.found = list(self.best), self.kept.copy()
 
-    def ranges(self, which: Sequence[int]) -> list[tuple[int, int]]:
-        """The contours of each glyph that has one of some contours: the first, and the one after the last."""
-        those = np.unique(np.searchsorted(self.glyphs, which, side="right") - 1)
-        return [(int(self.glyphs[g]), int(self.glyphs[g + 1])) for g in those]
+def tries(
+    trial: Trial[Result], refits: Iterable[Refit[Result]], judged: Callable[[Sequence[Result]], Trial[Result]],
+    which: Callable[[Changes], BoolArray] = changed,
+) -> Iterator[Trial[Result]]:  # fmt: skip
+    """A trial, and others, each with other results for those contours of the last one that are wrong.
+
+    Args:
+        refits: in turn. judged: makes a trial of results. which: contours that are wrong, by what changed.
+    """
+    yield trial
+    for refit in refits:
+        wrong = np.flatnonzero(which(trial.found)).tolist()
+        if not wrong:
+            return
+        results = list(trial.results)
+        for c, result in zip(wrong, refit(wrong), strict=True):
+            results[c] = result
+        trial = judged(results)
+        yield trial
 
 
 Part = tuple[ConvertedContours, int]
@@ -107,7 +89,8 @@ def faithful(
     """Fit contours; those that cross or collapse where their source does not are fitted again.
 
     They are fitted more closely, then in another mode, and in the end kept as they are in the source, as far as the
-    mode has it: see :class:`Search`. What still crosses in the best result is flagged.
+    mode has it. Of what is tried for a glyph that with the fewest contours outside the tolerance counts, and among
+    these the first with the fewest changes. What still crosses in it is flagged.
 
     Args:
         contours: of all glyphs. glyphs: (G + 1,) where the contours of each glyph begin.
@@ -115,49 +98,77 @@ def faithful(
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
+    best = _parts(fits.fit(contours, 0))
+    kept = _compared(contours, best, glyphs, options)
+    corners_kept, source_kept = np.zeros((2, len(best)), dtype=np.bool_)
+    for g in np.unique(np.searchsorted(glyphs, np.flatnonzero(changed(kept)), side="right") - 1).tolist():
+        a, b = glyphs[g : g + 2].tolist()
+        steps = _settled(contours, a, b, Trial(best[a:b], kept[:, a:b]), fits, options, tolerance)
+        own, other, last = (trial.results for trial in steps)
+        best[a:b], kept[:, a:b] = last, steps[-1].found
+        corners_kept[a:b] = [new is not old for new, old in zip(other, own, strict=True)]
+        source_kept[a:b] = [new is not old for new, old in zip(last, other, strict=True)]
+    result = assembled(best)
+    columns = {
+        "new_crossings": [None if count < 0 else count for count in kept[0].tolist()],
+        "collapsed": (kept[1] > 0).tolist(),
+        "corners_kept": corners_kept.tolist(),
+        "source_kept": source_kept.tolist(),
+    }
+    return with_geometry(replace(result, measures={**result.measures, **columns}), options)
 
-    def compare(a: int, b: int, results: Sequence[Part]) -> Changes:
-        source, made, own = contours.part(a, b), assembled(results).curves, np.unique(glyphs.clip(a, b)) - a
-        written = made.rounded(options.precision)
-        found = changes(source, written, own)
-        # Stretches that stay as they are in the source keep their decimals in fonts.
-        if options.is_for_fonts and not np.array_equal(made.points, written.points):
-            other = changes(source, made, own)  # what changed the more counts
-            found = np.where(np.minimum(found, other) < 0, -1, np.maximum(found, other))
-        return found
 
-    def is_outside(result: Part) -> bool:
-        return result[0].measures["within_tolerance"][result[1]] is False
+def _settled(
+    contours: ContourArrays, a: int, b: int, first: Trial[Part], fits: Fits, options: Options, tolerance: float
+) -> tuple[Trial[Part], Trial[Part], Trial[Part]]:
+    """The best of a glyph's fits, of those of another mode too, and of its source's contours too.
+
+    Args:
+        a, b: its contours are those from a up to b. first: the first fit.
+    """
+    source = contours.part(a, b)
+
+    def judged(results: Sequence[Part]) -> Trial[Part]:
+        return Trial(results, _compared(source, results, np.array([0, b - a]), options))
+
+    def better(trial: Trial[Part], refits: Iterable[Refit[Part]], which: Callable[[Changes], BoolArray]) -> Trial[Part]:
+        return first_good(tries(trial, refits, judged, which), lambda each: each.wrong(_is_outside))
 
     def fitted(of: Fits, turn: int, which: list[int]) -> list[Part]:
         try:
-            return _parts(of.fit(contours.chosen(which), turn))
+            return _parts(of.fit(source.chosen(which), turn))
         except GlyphsplineError as error:
-            error.contour = None if error.contour is None else which[error.contour]
+            error.contour = None if error.contour is None else a + which[error.contour]
             raise
 
-    search = Search(glyphs, _parts(fits.fit(contours, 0)), compare, is_outside)
-    for turn in range(1, fits.tries):
-        search.attempt(changed(search.found), partial(fitted, fits, turn))
-    own_best, instead = list(search.best), fits.instead
+    own = better(first, [partial(fitted, fits, turn) for turn in range(1, fits.tries)], changed)
+    other, instead = own, fits.instead
     if instead is not None:
         for turn in range(instead.tries):
-            search.go_back()
-            search.attempt(changed(search.kept[:1]), partial(fitted, instead, turn))
-    fits_best = list(search.best)
-    crosses, collapsed = search.kept > 0
+            other = better(other, [partial(fitted, instead, turn)], lambda found: changed(found[:1]))
     keeps_crossing = fits.keeps_crossing or (instead is not None and instead.keeps_crossing)
-    wrong = (collapsed & fits.keeps_collapsed) | (crosses & keeps_crossing)
-    search.go_back()
-    search.attempt(wrong, lambda which: _parts(as_source(contours.chosen(which), options, tolerance)))
-    result = assembled(search.best)
-    columns = {
-        "new_crossings": [None if count < 0 else count for count in search.kept[0].tolist()],
-        "collapsed": (search.kept[1] > 0).tolist(),
-        "corners_kept": [new is not old for new, old in zip(fits_best, own_best, strict=True)],
-        "source_kept": [new is not old for new, old in zip(search.best, fits_best, strict=True)],
-    }
-    return with_geometry(replace(result, measures={**result.measures, **columns}), options)
+    kept_whole = np.array([[keeps_crossing], [fits.keeps_collapsed]])
+    last = better(
+        other, [lambda which: _parts(as_source(source.chosen(which), options, tolerance))],
+        lambda found: ((found > 0) & kept_whole).any(axis=0),
+    )  # fmt: skip
+    return own, other, last
+
+
+def _compared(source: ContourArrays, results: Sequence[Part], glyphs: IntArray, options: Options) -> Changes:
+    """What changed in results as they are written."""
+    made = assembled(results).curves
+    written = made.rounded(options.precision)
+    found = changes(source, written, glyphs)
+    # Stretches that stay as they are in the source keep their decimals in fonts.
+    if options.is_for_fonts and not np.array_equal(made.points, written.points):
+        other = changes(source, made, glyphs)  # what changed the more counts
+        found = np.where(np.minimum(found, other) < 0, -1, np.maximum(found, other))
+    return found
+
+
+def _is_outside(result: Part) -> bool:
+    return result[0].measures["within_tolerance"][result[1]] is False
 
 
 def _parts(found: ConvertedContours) -> list[Part]:

@@ -1,4 +1,8 @@
-"""Readers: files to outlines."""
+"""Readers: files to outlines, and characters to glyphs.
+
+In: fonts and sources; out: :class:`.Outline`, by name, index or character. Read first: :mod:`.source`, then
+:mod:`.open`.
+"""
 
 from .open import open_source
 from .opentype.font import Font, open_font

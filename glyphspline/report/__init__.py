@@ -1,4 +1,7 @@
-"""The gallery of a finished run, and other pages."""
+"""The gallery of a finished run, and what other pages share.
+
+In: lines of a manifest; out: ``index.html`` and its data. Read first: :mod:`.gallery`.
+"""
 
 from __future__ import annotations
 

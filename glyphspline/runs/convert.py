@@ -20,24 +20,19 @@ from ..readers import Source
 from ..report import FOLDER as GALLERY
 from ..report.gallery import is_whole, write_index, write_report
 from ..types import Names
-from ..writers.formats import ResultsFormat, format_named
+from ..writers.formats import format_named
 from ..writers.svg.comb import combs
 from .engine import Item, Job, Observer, reason, run, settle
 from .file_names import file_names
 from .folder import (
-    JOURNAL,
     MANIFEST,
     Done,
     Output,
     Task,
-    conclude,
     done,
     entries_of,
     is_stated,
-    locked,
-    prepare,
-    read_record,
-    recorded,
+    progress_of,
     state,
     unstated,
 )
@@ -45,6 +40,7 @@ from .result_text import stored
 from .schedule import Place, heads_of, place_of, sources, workers
 from .spec import MAPS, OF_RUNS, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
 from .summary import Summary
+from .whole_formats import ResultsFormat
 
 if TYPE_CHECKING:
     pass
@@ -146,13 +142,9 @@ def convert_font(
     require_libraries(spec)
     for whole in spec.whole:
         whole.check(source)
-    with locked(out):
-        table = spec.table.path(source, out) if spec.table else None
-        prepare(out, spec, describe(source, spec, glyphs, None), restart, table)
-        rows = spec.table.kept(table, source.sha256) if spec.table and table else None
-        record = read_record(out, rows)
-        finished = record.finished()
-        summary = Summary()
+    table = spec.table.path(source, out) if spec.table else None
+    with progress_of(out, spec, describe(source, spec, glyphs, None), restart, table) as progress:
+        finished, summary = progress.finished, Summary()
         # Workers start while the tasks are listed; none do if all glyphs are finished.
         expected = len({*glyphs}.difference([source.glyph_names[gid] for gid in finished]))
         with workers(jobs if expected else 0, spec.limits.seconds, spec.kinds, expected, executor=executor) as pool:
@@ -161,17 +153,17 @@ def convert_font(
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
             settle(job, left, pool, len(left))  # before the scale, which is of a sample
             job = with_scale(job, source, glyphs, tasks, pool)
-            for part in recorded(job, left, pool, record, out, observer, rows):
+            for part in progress.advance(job, left, pool, observer):
                 for glyph in part.result:
                     summary.time(part.seconds / len(part.tasks), glyph.name)
             for name in spec.folders if left else ():
                 remove_partials(out / name)
         gallery = GALLERY in spec.formats
-        concluded = (out / MANIFEST).exists() and not (out / JOURNAL).exists()
-        if left or not concluded or (gallery and not is_whole(out, len(record.where))):
-            conclude(out, record, gallery, unstated)
-        if table and rows and (rows.added or not table.exists()):
-            summary.remarks.append(f"{table.name}: {rows.write(entry['gid'] for entry in entries_of(out))} contours")
+        is_changed = left or not progress.is_concluded
+        if spec.table and table and (is_changed or not table.exists()):
+            summary.remarks.append(f"{table.name}: {progress.write_table(spec.table, table)} contours")
+        if is_changed or (gallery and not is_whole(out, len(progress.known))):
+            progress.conclude(gallery, unstated)
         files = [(each, each.path(source, out)) for each in spec.files]
         if not (left or not is_stated(out) or not all(path.exists() for _, path in files)):
             files = [(each, path) for each, path in files if each.always]

@@ -1,8 +1,8 @@
-"""The folder of a run: its lock, and the manifest with its journal, by which an interrupted run is resumed.
+"""The folder of a run: its lock, and its manifest, by which with the record an interrupted run is resumed.
 
-During a run each finished glyph appends a line to the journal, in any order: the sizes of its files, a tab, its
-manifest line. At the end the manifest is written in glyph index order, and the journal is removed. A truncated line, or
-one whose files are missing or differ in size, is ignored.
+While a run goes on, the record has each finished glyph, and the manifest, for those who look at it, grows by lines in
+any order. At the end it is written in glyph index order, and the record is removed. What these name but the disk has
+not whole counts as not done.
 
 Only ``run.json`` and, at the end, the manifest and ``SIZES`` are synced to the disk. A power cut may lose other files;
 ``SIZES`` has the sizes of the files of each glyph of the manifest, by which such a loss is found.
@@ -15,31 +15,35 @@ import json
 import logging
 import os
 import re
+import shutil
 import socket
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import cache
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
-from typing import Any, BinaryIO, NamedTuple
+from typing import Any, NamedTuple
 
 from filelock import FileLock, Timeout
 
 from ..errors import OutputError, words_of
-from ..files import O_BINARY, make_folder, reading, remove_partials, replacing, sizes, write_all, writing
+from ..files import make_folder, reading, remove_partials, replacing, sizes, write_all, writing
 from ..report.data import encoded, row_of
 from ..report.gallery import Gallery, remove_gallery
 from ..types import Head
-from ..writers.formats import KeptRows
 from .engine import Job, Observer, Part, run
+from .record import RECORD, Entry, Record, open_record, remove_record
 from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
+from .whole_formats import TableFormat
 
 LOCK = ".lock"
 MANIFEST = "manifest.jsonl"
-JOURNAL = ".journal.jsonl"
 SIZES = ".sizes.txt"
+
+JOURNAL, UNFINISHED = ".journal.jsonl", ".unfinished"
+"""What older versions have while a run is not finished: lines of glyphs, and a folder of rows of tables."""
 
 UNSUPPORTED = {errno.ENOLCK, errno.EOPNOTSUPP, errno.ENOTSUP, errno.EINVAL}
 """Errors of file systems that know no locks."""
@@ -107,13 +111,14 @@ class Done(NamedTuple):
     """A finished glyph.
 
     Attributes:
-        line: of the journal. row: of the gallery's table; "" if not made yet.
+        sizes: of its files. line: of the manifest. row: of the gallery's table; "" if not made yet.
         rows: of the table of contours, an IPC stream; the first glyph of a batch has those of all.
     """
 
     gid: int
     name: str
     status: str
+    sizes: str
     line: bytes
     row: str = ""
     rows: bytes = b""
@@ -133,69 +138,117 @@ def done(
     """
     name, gid, unicodes = task.head
     whole = {"glyph": name, "gid": gid, "unicodes": [f"U+{code:04X}" for code in unicodes], **entry}
-    line = f"{','.join(map(str, sizes))}\t{encode(whole)}\n".encode()
-    return Done(gid, name, entry["status"], line, row(whole) if row else "")
+    lengths, line = ",".join(map(str, sizes)), f"{encode(whole)}\n".encode()
+    return Done(gid, name, entry["status"], lengths, line, row(whole) if row else "")
 
 
-@dataclass
-class Record:
-    """An index of finished glyphs; their lines stay on disk.
-
-    Attributes:
-        where: glyph index to the file and the offset of its line. failed: indices of glyphs that failed.
-        rows: of the gallery's table, for glyphs of this run.
-        sizes: of the files of each glyph of the manifest, in the journal's format.
-    """
-
-    where: dict[int, tuple[str, int]] = field(default_factory=dict)
-    failed: set[int] = field(default_factory=set)
-    rows: dict[int, str] = field(default_factory=dict)
-    sizes: dict[int, bytes] = field(default_factory=dict)
-
-    def finished(self) -> set[int]:
-        """Glyphs that are not converted again. Glyphs that failed are: the cause may be gone."""
-        return self.where.keys() - self.failed
-
-
-def read_record(out: Path, rows: Container[int] | None = None) -> Record:
-    """Read the record of an earlier run from the manifest and journal of a folder.
+class Progress:
+    """How far the run of a folder is: what the record has, or else the manifest of a finished run.
 
     Args:
-        rows: the glyphs whose rows of a table are there, if there is to be one; one without does not count.
+        rows: the glyphs whose rows a finished table has, if there is to be one; one without rows is not done.
+
+    Attributes:
+        known: glyph indices that have a line. finished: of them those that are not converted again: glyphs that failed
+            are, as the cause may be gone. is_concluded: whether the run was finished.
     """
-    record = Record()
-    with suppress(FileNotFoundError):
-        line = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
-        found = map(line.fullmatch, (out / SIZES).read_bytes().splitlines())
-        record.sizes = {int(match[1]): match[2] for match in found if match}
-    present: dict[str, dict[str, int]] = {}
-    for name in (MANIFEST, JOURNAL):
-        for offset, lengths, entry in _lines(out / name):
-            gid = entry["gid"]
-            if not _written(out, entry["files"], record.sizes.get(gid) if lengths is None else lengths, present):
+
+    def __init__(self, out: Path, record: Record, rows: Container[int] | None = None) -> None:
+        self._out, self._record = out, record
+        self.is_concluded = not (record.is_open or record.is_lost) and (out / MANIFEST).exists()
+        kept = {number for number, _ in record.batches()} if record.is_open else set[int]()
+        present: dict[str, dict[str, int]] = {}
+        failed = set[int]()
+        self.known = set[int]()
+        for entry in record.entries() if record.is_open else self._of_manifest():
+            facts = json.loads(entry.line)
+            if not _written(out, facts["files"], entry.sizes, present):
                 continue
-            if rows is not None and entry.get("status") == "ok" and gid not in rows:
-                continue
-            record.where[gid] = (name, offset)
-            (record.failed.add if entry["status"] == "failed" else record.failed.discard)(gid)
-    return record
+            if (
+                rows is None
+                or facts["status"] != "ok"
+                or entry.batch in kept
+                or (not entry.batch and entry.gid in rows)
+            ):
+                self.known.add(entry.gid)
+                (failed.add if facts["status"] == "failed" else failed.discard)(entry.gid)
+        self.finished = self.known - failed
+
+    def entries(self) -> Iterator[Entry]:
+        """What is known of each glyph, in glyph index order."""
+        every = self._record.entries() if self._record.is_open else self._of_manifest()
+        return (entry for entry in every if entry.gid in self.known)
+
+    def _of_manifest(self) -> Iterator[Entry]:
+        """Glyphs of the manifest; where a record is lost, only those that ``SIZES`` has."""
+        known: dict[int, str] = {}
+        with suppress(FileNotFoundError):
+            line = re.compile(rb"(\d{1,9})\t((?:\d{1,15}(?:,\d{1,15})*)?)")
+            found = map(line.fullmatch, (self._out / SIZES).read_bytes().splitlines())
+            known = {int(match[1]): match[2].decode() for match in found if match}
+        for text, entry in _lines(self._out / MANIFEST):
+            if entry["gid"] in known or not self._record.is_lost:
+                yield Entry(entry["gid"], None, known.get(entry["gid"]), text)
+
+    def advance(
+        self, job: Job[Task, list[Done]], tasks: Sequence[Task], pool: Executor, observer: Observer | None
+    ) -> Iterator[Part[Task, list[Done]]]:
+        """Do tasks in a pool; each is in the record once its files are written, so that an interrupted run goes on."""
+        if not tasks:
+            return
+        if not self._record.is_open:
+            self._record.begin(self.entries())
+        path = self._out / MANIFEST
+        with replacing(path) as file:  # what an interruption cut off is not in it
+            file.writelines(entry.line for entry in self.entries())
+        with writing(path):
+            manifest = open(path, "ab", buffering=0)  # noqa: SIM115
+        with manifest:
+            for part in run(job, tasks, pool, observer=observer, before=len(self.finished)):
+                with writing(path):
+                    write_all(manifest, b"".join(glyph.line for glyph in part.result))
+                entries = [Entry(glyph.gid, None, glyph.sizes, glyph.line, glyph.row) for glyph in part.result]
+                self._record.add(entries, b"".join(glyph.rows for glyph in part.result))
+                self.known.update(entry.gid for entry in entries)
+                yield part
+
+    def write_table(self, table: TableFormat, path: Path) -> int:
+        """Write a table of all glyphs; returns the number of its rows."""
+        return table.write(path, ((entry.gid, entry.batch) for entry in self.entries()), self._record.rows)
+
+    def conclude(self, with_gallery: bool = False, changed: Callable[[bytes], bytes] = bytes) -> None:
+        """Write manifest and sizes in glyph index order with the gallery's page and tables, and remove the record.
+
+        Args:
+            changed: from a line, as it was recorded, to the one that is written.
+        """
+        out = self._out
+        gallery = Gallery(out) if with_gallery else None
+        with replacing(out / MANIFEST, durable=True) as manifest, replacing(out / SIZES, durable=True) as lengths:
+            for entry in self.entries():
+                line = changed(entry.line)
+                manifest.write(line)
+                if entry.sizes is not None:
+                    lengths.write(f"{entry.gid}\t{entry.sizes}\n".encode())
+                if gallery:
+                    gallery.add(entry.row or row_of(json.loads(line)))
+            if gallery:
+                gallery.close(read_run(out) or {})
+        self._record.remove()
 
 
-def _lines(path: Path) -> Iterator[tuple[int, bytes | None, dict[str, Any]]]:
-    """Offset, file sizes (None in a manifest) and parsed content of each whole line of a manifest or journal."""
+def _lines(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
+    """Each whole line of a manifest, or of an older version's journal, and its parsed content."""
     with suppress(FileNotFoundError), open(path, "rb") as file:
-        offset = 0
         for line in file:
-            head, tab, text = line.rpartition(b"\t")
-            entry = None
-            with suppress(ValueError):  # a truncated line that the next run continued
+            text, entry = line.rpartition(b"\t")[2], None
+            with suppress(ValueError):  # a truncated line
                 entry = json.loads(text) if line.endswith(b"\n") else None
             if isinstance(entry, dict) and isinstance(entry.get("gid"), int) and isinstance(entry.get("files"), dict):
-                yield offset, head if tab else None, entry
-            offset += len(line)
+                yield text, entry
 
 
-def _written(out: Path, files: dict[str, str], lengths: bytes | None, present: dict[str, dict[str, int]]) -> bool:
+def _written(out: Path, files: dict[str, str], lengths: str | None, present: dict[str, dict[str, int]]) -> bool:
     """Whether all files of an entry exist with the sizes ``lengths``, or are not empty if these are None.
 
     ``present``: sizes of files by folder, as far as they are known; folders are added.
@@ -206,7 +259,7 @@ def _written(out: Path, files: dict[str, str], lengths: bytes | None, present: d
         if folder not in present:
             present[folder] = sizes(out / folder) if is_folder(folder) else {}
         there.append(present[folder].get(name))
-    if not (all(there) if lengths is None else lengths == ",".join(map(str, there)).encode()):
+    if not (all(there) if lengths is None else lengths == ",".join(map(str, there))):
         return False
     return all(_stored(f"{out}/{path}", size or 0) for path, size in zip(files.values(), there, strict=True))
 
@@ -221,135 +274,76 @@ def _stored(path: str, size: int) -> bool:
         return False
 
 
-def remove_written(out: Path) -> None:
-    """Remove the files listed in the manifest and journal of an earlier run, only inside the folders of formats."""
+@contextmanager
+def progress_of(
+    out: Path, spec: RunSpec, run: dict[str, Any], restart: bool, table: Path | None = None
+) -> Iterator[Progress]:
+    """How far a run is, in its folder, which is locked; what is there of one that does not go on is removed.
+
+    Args:
+        run: the content of ``run.json``. table: its path, if the run has one.
+
+    Raises:
+        OutputError: the folder cannot be written, or another run writes to it; or, unless ``restart`` is given, a run
+            with other options is there, or an unfinished one of an older version.
+    """
+    with locked(out):
+        if not restart:
+            refuse_older(out)
+        old = None if restart else read_run(out)
+        if old is None:
+            remove_run(out)
+            if table:
+                table.unlink(missing_ok=True)
+        elif changed := differences(old, run):
+            raise OutputError(
+                "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
+            )
+        for folder in (*spec.folders, "."):
+            make_folder(out / folder)
+            remove_partials(out / folder)
+        with open_record(out) as record:
+            yield Progress(out, record, spec.table.held(table) if spec.table and table else None)
+
+
+def remove_run(out: Path) -> None:
+    """Remove what there is of a run: files that a manifest or journal lists, only inside the folders of formats."""
     is_own = cache(lambda folder: is_folder(folder) and not (out / folder).is_symlink())
-    for name in (MANIFEST, JOURNAL):
-        for _, _, entry in _lines(out / name):
-            for path in entry["files"].values():
-                folder, _, file = str(path).partition("/")
-                if is_own(folder) and file == os.path.basename(file):
-                    with suppress(FileNotFoundError):
-                        os.unlink(f"{out}/{path}")
+    for _, entry in chain.from_iterable(_lines(out / name) for name in (MANIFEST, JOURNAL)):
+        for path in entry["files"].values():
+            folder, _, file = str(path).partition("/")
+            if is_own(folder) and file == os.path.basename(file):
+                with suppress(FileNotFoundError):
+                    os.unlink(f"{out}/{path}")
+    remove_gallery(out)
+    for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
+        (out / name).unlink(missing_ok=True)
+    shutil.rmtree(out / UNFINISHED, ignore_errors=True)
+    remove_record(out)
+
+
+def refuse_older(out: Path) -> None:
+    """Raise an OutputError if a run of an older version is not finished."""
+    for name in (JOURNAL, UNFINISHED):
+        if (out / name).exists():
+            words = f"an older version left a run unfinished ({name}): finish it with that, or --restart does it anew"
+            raise OutputError(words, font=str(out))
 
 
 def entries_of(out: Path) -> Iterator[dict[str, Any]]:
     """The entries of a finished folder's manifest, in glyph index order.
 
     Raises:
-        OutputError: there is no manifest, or a line of it cannot be read.
+        OutputError: there is no manifest of a finished run, or a line of it cannot be read.
     """
     path = out / MANIFEST
-    if not path.exists():
+    if not path.exists() or (out / RECORD).exists():
         raise OutputError("no manifest: the folder holds no finished run", font=str(path))
     with open(path, encoding="utf-8") as file:
         for line in file:
             with reading(path):
                 entry = json.loads(line)
             yield entry
-
-
-def recorded_lines(out: Path, record: Record) -> Iterator[tuple[int, bytes | None, bytes]]:
-    """Index, sizes of files (None if they are not known) and line of each glyph, in glyph index order."""
-    with ExitStack() as opened:
-        files: dict[str, BinaryIO] = {}
-        for gid in sorted(record.where):
-            name, offset = record.where[gid]
-            if name not in files:
-                files[name] = opened.enter_context(open(out / name, "rb"))
-            files[name].seek(offset)
-            head, tab, line = files[name].readline().rpartition(b"\t")
-            yield gid, head if tab else record.sizes.get(gid), line
-
-
-def prepare(out: Path, spec: RunSpec, run: dict[str, Any], restart: bool, table: Path | None = None) -> None:
-    """Make the folders of a run, and remove what is there of one that does not go on.
-
-    Args:
-        run: the content of ``run.json``. table: its path, if the run has one.
-
-    Raises:
-        OutputError: a run with other options is there, and ``restart`` is not given.
-    """
-    old = None if restart else read_run(out)
-    if old is None:
-        if table and spec.table:
-            table.unlink(missing_ok=True)
-            spec.table.forget(out)
-        remove_written(out)
-        remove_gallery(out)
-        for name in (MANIFEST, SIZES, JOURNAL, RUN_FILE):
-            (out / name).unlink(missing_ok=True)
-    elif changed := differences(old, run):
-        raise OutputError(
-            "holds a run with other options; --restart does it anew:\n  " + "\n  ".join(changed), font=str(out)
-        )
-    for name in spec.folders:
-        make_folder(out / name)
-        remove_partials(out / name)
-    remove_partials(out)
-
-
-def recorded(
-    job: Job[Task, list[Done]],
-    tasks: Sequence[Task],
-    pool: Executor,
-    record: Record,
-    out: Path,
-    observer: Observer | None,
-    rows: KeptRows | None = None,
-) -> Iterator[Part[Task, list[Done]]]:
-    """Do tasks in a pool; each is in the journal once its files are written, so that an interrupted run goes on.
-
-    Its rows are kept before that. A symbolic link of the journal's name is not followed.
-    """
-    if not tasks:
-        return
-    path, before = out / JOURNAL, len(record.finished())
-    flags = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_NOFOLLOW", 0) | O_BINARY
-    with writing(path):
-        journal = open(os.open(path, flags, 0o666), "ab", buffering=0)  # noqa: SIM115
-
-    def write(data: bytes) -> None:
-        with writing(path):
-            write_all(journal, data)
-
-    with journal:
-        write(b"\n")  # ends a truncated line
-        for part in run(job, tasks, pool, observer=observer, before=before):
-            for stream in [glyph.rows for glyph in part.result if glyph.rows]:
-                assert rows is not None
-                rows.add(stream)
-            at = os.fstat(journal.fileno()).st_size
-            for glyph in part.result:
-                record.where[glyph.gid] = (JOURNAL, at)
-                record.rows[glyph.gid] = glyph.row
-                at += len(glyph.line)
-            write(b"".join([glyph.line for glyph in part.result]))
-            yield part
-
-
-def conclude(out: Path, record: Record, with_gallery: bool = False, changed: Callable[[bytes], bytes] = bytes) -> None:
-    """Write manifest and sizes in glyph index order with the gallery's page and tables.
-
-    The manifest gets its name, and the journal is removed, when all the rest is written: otherwise an interruption
-    would leave it missing.
-
-    Args:
-        changed: from a line, as it was recorded, to the one that is written.
-    """
-    gallery = Gallery(out) if with_gallery else None
-    with replacing(out / MANIFEST, durable=True) as manifest, replacing(out / SIZES, durable=True) as lengths:
-        for gid, known, own in recorded_lines(out, record):
-            line = changed(own)
-            manifest.write(line)
-            if known is not None:
-                lengths.write(b"%d\t%s\n" % (gid, known))
-            if gallery:
-                gallery.add(record.rows.get(gid) or row_of(json.loads(line)))
-        if gallery:
-            gallery.close(read_run(out) or {})
-    (out / JOURNAL).unlink(missing_ok=True)
 
 
 STORED = "stored"

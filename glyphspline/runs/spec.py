@@ -21,17 +21,9 @@ from ..fitting.options import Options
 from ..report import FOLDER as GALLERY
 from ..report import SUFFIX
 from ..types import Names
-from ..writers.formats import (
-    OURS,
-    ResultsFormat,
-    TableFormat,
-    WholeFormat,
-    format_named,
-    format_names,
-    is_format,
-    whole_named,
-)
+from ..writers.formats import OURS, format_named, format_names, is_format
 from ..writers.settings import Maps, Settings
+from .whole_formats import ResultsFormat, TableFormat, WholeFormat, whole_named
 
 if TYPE_CHECKING:
     from ..readers import Source
@@ -144,10 +136,10 @@ class RunSpec:
     limits: Limits = LIMITS
     maps: Maps = field(default_factory=Maps)
     verb: ClassVar[str] = "convert"
-    needs_formats: ClassVar[bool] = True
     unshown: ClassVar[tuple[str, ...]] = (
         "continuity", "effort", "flatness", "measure", "stroke_width", "thousandths",
     )  # fmt: skip
+    needs_formats: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if isinstance(self.formats, str):

@@ -1,1 +1,4 @@
-"""Writers: from a :class:`~glyphspline.fitting.results.GlyphResult` to the content of files."""
+"""Writers: from a :class:`~glyphspline.fitting.results.GlyphResult` to the content of files.
+
+In: a result and :class:`.Settings`; out: bytes or text. Read first: :mod:`.formats`.
+"""

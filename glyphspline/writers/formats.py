@@ -1,4 +1,4 @@
-"""Formats: a glyph or a text as a file, and a font as one, by name. Plug-ins add theirs.
+"""Formats of a drawing: a glyph or a text as a file, by name. Plug-ins add theirs.
 
 Formats are found by name in one table, ``OURS``; only for a name that is not in it plug-ins are asked.
 """
@@ -6,11 +6,10 @@ Formats are found by name in one table, ``OURS``; only for a name that is not in
 from __future__ import annotations
 
 import re
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any
 
 from .. import hooks
 from ..errors import GlyphsplineError, OptionError, require
@@ -18,11 +17,7 @@ from ..extras import EXTRAS
 from .settings import Settings
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from ..fitting.options import Options
     from ..fitting.results import GlyphResult
-    from ..readers import Source
 
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
 _SUFFIX = re.compile(r"(\.[A-Za-z0-9]+)+")
@@ -58,94 +53,6 @@ class Format:
         require(good, "the suffix of a format is like '.svg'", suffix)
         require(callable(self.write), "a format writes with a function", self.write)
         require(self.extra is None or self.extra in EXTRAS, f"extra is one of {', '.join(EXTRAS)}", self.extra)
-
-
-class WholeFormat(ABC):
-    """A format with one file a font, which a run writes at its end from all glyphs of its folder.
-
-    Attributes:
-        name: as in ``--format``; also the file's suffix. extra: the extra of pyproject.toml that it needs.
-        verb: the command that writes it. always: whether it is written again where nothing is left to do.
-    """
-
-    name: ClassVar[str]
-    extra: ClassVar[str | None] = None
-    verb: ClassVar[str] = "convert"
-    always: ClassVar[bool] = False
-
-    def check(self, source: Source) -> None:  # noqa: B027 -- most sources can
-        """Raise a GlyphsplineError before the run if a source cannot become such a file."""
-
-    def path(self, source: Source, out: Path) -> Path:
-        """The file in a run's folder."""
-        stem = re.sub(r"[^\w-]+", "", source.family)[:50] or "font"
-        return out / f"{stem}-spline.{self.name}"
-
-    def is_fitted(self, options: Options) -> bool:
-        """Whether it is made of fitted curves."""
-        return True
-
-    def share(self, options: Options, tolerance: float) -> float:
-        """What of a tolerance is left for the fit, in font units: writing the file may take the rest."""
-        return tolerance
-
-
-class ResultsFormat(WholeFormat):
-    """One that is made of results, which the run stores."""
-
-    @abstractmethod
-    def write(
-        self, source: Source, glyphs: Iterator[GlyphResult], path: Path, spec: Any
-    ) -> tuple[list[str], Mapping[str, Any]]:
-        """Write the file; returns remarks, and what it holds of glyphs by name. ``spec`` is the run's.
-
-        Args:
-            spec: of the run, as its command has it: a :class:`.runs.spec.RunSpec`.
-
-        Raises:
-            OutputError: it cannot be written. GlyphsplineError: the source cannot become such a file.
-        """
-
-
-class TableFormat(WholeFormat):
-    """One of rows, which the run keeps batch by batch."""
-
-    @abstractmethod
-    def rows(self, font: tuple[str, str], glyphs: Sequence[GlyphResult]) -> bytes:
-        """The rows of some glyphs of a font with this family and style."""
-
-    @abstractmethod
-    def kept(self, path: Path, mark: str) -> KeptRows:
-        """The rows that there are already for a table, of a run with that mark."""
-
-    @abstractmethod
-    def forget(self, folder: Path) -> None:
-        """Remove what is kept in a run's folder for a table that is not whole."""
-
-
-class KeptRows(Protocol):
-    """The rows of a table in the making.
-
-    Attributes:
-        added: whether there are some that the table does not have.
-    """
-
-    added: bool
-
-    def __contains__(self, gid: object) -> bool:
-        """Whether the rows of a glyph are there."""
-
-    def add(self, rows: bytes) -> None:
-        """Keep the rows of some glyphs."""
-
-    def write(self, gids: Iterable[int]) -> int:
-        """Write the table anew with the rows of these glyphs; returns their number."""
-
-
-def whole_named(name: str) -> WholeFormat | None:
-    """The format with one file a font of that name; None if there is none."""
-    found: WholeFormat | None = hooks.find("whole", name)
-    return found
 
 
 def format_named(name: str) -> Format:

@@ -34,7 +34,7 @@ CONVERSIONS = [
     ["--remove-overlaps", "--format=svg"],
 ]
 FITS = [
-    *([f"--format={name}"] for name in ("svg", "otf", "ttf", "ufo")), [], ["--continuity=c2"],
+    *([f"--format={name}"] for name in ("otf", "ttf", "ufo", "svg")), [], ["--continuity=c2"],
     ["--masters", "--format=gallery"], ["--masters"],
 ]  # fmt: skip
 

@@ -48,7 +48,7 @@ CALLS = {
     "smooth": "convert FONT --all --step 60 --format svg,json -o out",
     "fitted": "convert FONT --all --format svg,curvature,gallery -o out",
     "sharp": "convert FONT --all --preset type --format svg,dxf -o out",
-    "font": "refit FONT --all --preset type --format ttf,otf,ufo -o out",
+    "font": "refit FONT --format ttf,otf,ufo -o out",
     "masters": "refit FONT --masters --continuity c2 --format MASTERS -o out",
     "check": "check FONT --json --html page.html --loglevel info",
     "diff": "diff FONT SOUND --json --html page.html",

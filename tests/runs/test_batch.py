@@ -26,7 +26,7 @@ from glyphspline.readers import Font, open_font
 from glyphspline.runs import worker
 from glyphspline.runs.convert import convert_font, write_gallery
 from glyphspline.runs.file_names import LONGEST_NAME, file_names, folders_for
-from glyphspline.runs.folder import JOURNAL, entries_of
+from glyphspline.runs.folder import entries_of
 from glyphspline.runs.font_search import find_fonts
 from glyphspline.runs.spec import Limits, RunSpec
 from glyphspline.runs.summary import Summary
@@ -101,15 +101,15 @@ def test_an_interrupted_run_goes_on_and_ends_the_same(finished: Path, font: Font
     names = font.select(text="O8 B")
     with pytest.raises(KeyboardInterrupt):
         convert_font(font, names, out, SPEC, jobs=0, observer=interrupt)
-    assert not (out / "manifest.jsonl").exists()
+    assert not (out / ".sizes.txt").exists()
     (out / "svg" / ".B_.svg-1.part").write_text("half a fi")
-    with open(out / JOURNAL, "ab") as journal:
-        journal.write(b'7,9\t{"glyph":"O"')
+    with open(out / "manifest.jsonl", "ab") as manifest:
+        manifest.write(b'{"glyph":"O"')
     assert convert_font(font, names, out, SPEC, jobs=0).done == 2
     assert content(out) == content(finished)
 
 
-def test_a_file_lost_or_cut_after_its_journal_line_is_written_again(finished: Path, font: Font, tmp_path: Path) -> None:
+def test_a_file_lost_or_cut_after_it_was_recorded_is_written_again(finished: Path, font: Font, tmp_path: Path) -> None:
     out = tmp_path / "out"
     with pytest.raises(KeyboardInterrupt):
         convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0, observer=interrupt)
@@ -340,7 +340,7 @@ def test_fonts_are_found_in_folders_globs_and_lists(tree: Path) -> None:
 KILL_ME = """
 import os, signal, sys
 from pathlib import Path
-from glyphspline.runs.jobs.convert import convert_font
+from glyphspline.runs.convert import convert_font
 from glyphspline.runs.spec import RunSpec
 from glyphspline.fitting.options import Options
 from glyphspline.readers import open_font
@@ -363,7 +363,7 @@ def test_a_killed_run_goes_on_and_ends_the_same(moment: int, finished: Path, fon
     killed = subprocess.run([sys.executable, script, font.path, out, str(moment)], cwd=FONTS.parent, timeout=600,
                             env={**os.environ, "PYTHONPATH": str(FONTS.parent)})  # fmt: skip
     assert killed.returncode == -signal.SIGKILL
-    assert not (out / "manifest.jsonl").exists()
+    assert not (out / ".sizes.txt").exists()
     summary = convert_font(font, font.select(text="O8 B"), out, SPEC, jobs=0)
     assert summary.done <= 4 - moment
     for _ in range(6000):  # a worker may outlive the process that was killed, and write the file that it is at

@@ -165,12 +165,15 @@ def test_a_text_that_needs_too_many_vertices_is_refused(tmp_path: Path) -> None:
         drawings(TextJob(text, Options(step=1e-6), ("svg",), Settings()))
 
 
+ENDS = ("", "-wal", "-shm", "-journal")
+
+
 def test_links_in_the_output_folder_lead_nowhere(tmp_path: Path) -> None:
     victim = tmp_path / "victim"
     victim.write_text("precious")
     out = tmp_path / "out"
     (out / "svg").mkdir(parents=True)
-    for name in ("run.json", "index.html", "svg/O.svg", ".journal.jsonl"):
+    for name in ("run.json", "index.html", "svg/O.svg", "manifest.jsonl", *(f".record.sqlite{end}" for end in ENDS)):
         (out / name).symlink_to(victim)
     call = [
         sys.executable,

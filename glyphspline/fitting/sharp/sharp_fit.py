@@ -6,6 +6,7 @@ the result is within the tolerance, and measures it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,7 @@ from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..faithful import Fits
+from ..first_good import first_good
 from ..ladders import RETRIES, SHARP_TRIES
 from ..measures import Columns, distance_columns
 from ..options import Options
@@ -153,16 +155,18 @@ def fit_sharp(
         angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=True, margin=float(options.margin),
         residual=options.solver_tolerance,
     )  # fmt: skip
-    chains, pieces = fit_contours(cubics, source, settings)
-    fit = _certified(chains, pieces, mixes, options, tolerance, None, np.full(len(pieces.spans), -1))
     shares = RETRIES["plain" if mixes is None else "masters"]
-    for attempt in range(len(shares) + 1):
-        poor = fit.bounds > tolerance
-        if not poor.any():
-            break
-        pieces, same = refit(chains, fit.pieces, poor, np.array(shares[attempt:]), settings)
-        fit = _certified(chains, pieces, mixes, options, tolerance, fit, same)
-    return fit
+
+    def fits() -> Iterator[SharpFit]:
+        chains, pieces = fit_contours(cubics, source, settings)
+        fit, same = None, np.full(len(pieces.spans), -1)
+        for attempt in range(len(shares) + 2):
+            fit = _certified(chains, pieces, mixes, options, tolerance, fit, same)
+            yield fit
+            if attempt <= len(shares):
+                pieces, same = refit(chains, fit.pieces, fit.bounds > tolerance, np.array(shares[attempt:]), settings)
+
+    return first_good(fits(), lambda fit: (int((fit.bounds > tolerance).sum()),))
 
 
 def _certified(

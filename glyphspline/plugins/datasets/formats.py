@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ...writers.formats import TableFormat
+from ...runs.whole_formats import TableFormat
 
 if TYPE_CHECKING:
     from ...fitting.results import GlyphResult
-    from .kept import Rows
 
 
 class Parquet(TableFormat):
@@ -25,17 +24,17 @@ class Parquet(TableFormat):
 
         return streamed(rows(font, list(glyphs)))
 
-    def kept(self, path: Path, mark: str) -> Rows:
-        """Rows in the table of an earlier run, and beside it."""
-        from .kept import Rows
+    def held(self, path: Path) -> Container[int]:
+        """Glyphs of a table of these columns."""
+        from .kept import groups_of
 
-        return Rows(path, mark)
+        return groups_of(path)
 
-    def forget(self, folder: Path) -> None:
-        """Remove the chunks of an unfinished table."""
-        from .kept import remove_unfinished
+    def write(self, path: Path, places: Iterable[tuple[int, int | None]], rows: Callable[[int], bytes]) -> int:
+        """Write the table in row groups, of which few are in memory."""
+        from .kept import write_again
 
-        remove_unfinished(folder)
+        return write_again(path, places, rows)
 
 
 PARQUET = Parquet()

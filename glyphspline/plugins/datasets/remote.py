@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from hashlib import file_digest
+from hashlib import file_digest, sha256
 from pathlib import Path, PurePosixPath
 from typing import Any, BinaryIO, TypeVar, cast
 from urllib.parse import unquote, urlsplit
@@ -220,7 +220,7 @@ def fetch_fonts(url: str, suffixes: frozenset[str]) -> list[Path]:
             found = [path]
         if not found:
             raise FontError("there are no fonts", font=shown(url))
-        folder = cache_folder()
+        folder = cache_folder("fonts")
         with ThreadPoolExecutor(8) as threads:
             return list(threads.map(lambda item: _fetched(url, item, folder), found))
 
@@ -249,14 +249,33 @@ def file_name(path: str) -> str:
     return name if name.strip(".") else "font"
 
 
-def cache_folder() -> Path:
-    """The folder of fetched fonts: ``glyphspline/fonts`` in the user's cache.
+@contextmanager
+def folder_of_record(out: str) -> Iterator[Path]:
+    """The folder with the record of a run: the output folder, or for a URL one in the user's cache.
+
+    Raises:
+        OutputError: that cannot be made.
+    """
+    if not is_url(out):
+        yield Path(out)
+        return
+    folder = (
+        cache_folder("runs") / f"{re.sub(r'[^A-Za-z0-9]+', '-', out)[-50:]}-{sha256(out.encode()).hexdigest()[:16]}"
+    )
+    yield folder
+    with suppress(OSError):  # where another run has begun
+        folder.rmdir()
+
+
+def cache_folder(name: str) -> Path:
+    """A folder of that name in the user's cache.
 
     Raises:
         OutputError: it cannot be made.
     """
-    home = os.environ.get("LOCALAPPDATA") if os.name == "nt" else os.environ.get("XDG_CACHE_HOME")
-    folder = Path(home or os.path.expanduser("~/.cache")) / "glyphspline" / "fonts"
+    from platformdirs import user_cache_dir
+
+    folder = Path(user_cache_dir("glyphspline", appauthor=False)) / name
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
     except OSError as error:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import time
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Executor
-from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain, islice
@@ -19,15 +19,16 @@ from ...extras import need
 from ...files import reading
 from ...runs.convert import ConvertJob
 from ...runs.engine import Item, Job, Observer, reason, run
-from ...runs.folder import locked
+from ...runs.folder import UNFINISHED, locked, refuse_older
 from ...runs.font_search import find_fonts
+from ...runs.record import Record, open_record, remove_record
 from ...runs.schedule import Place, sources, workers
 from ...runs.shapes import Shapes
 from ...runs.spec import LIMITS, differences, kinds_for
 from . import remote
 from .card import Summary, card, write_fonts
 from .columns import schema
-from .kept import UNFINISHED, Made, Unfinished, remove_unfinished, streamed
+from .kept import Chunks, Made, streamed
 from .plan import Plan, Shard, Task, plan_of, record_text
 from .scan import ScanJob, selected
 from .shards import OfFont, add_shapes, finished, write_shard
@@ -146,26 +147,31 @@ def dataset(
         raise OptionError("no fonts found")
     kinds = ["points", *(["unfitted"] if spec.options is None else kinds_for(spec.options))]
     with (
-        nullcontext() if remote.is_url(folder) else locked(Path(folder)),  # a store has no locks
+        remote.folder_of_record(folder) as place,
+        locked(place),
         workers(jobs, LIMITS.seconds, kinds, len(found), scheduler=scheduler, executor=executor) as pool,
     ):
         scanned = run(ScanJob(spec), [path.absolute() for path in found], pool)
         plan = plan_of(spec, [facts for part in scanned for facts in part.result], sizes)
-        _prepare(folder, plan, restart)
-        summary = _written(folder, plan, pool, observer)
+        _prepare(folder, place, plan, restart)
+        with open_record(place) as record:
+            summary = _written(folder, plan, record, pool, observer)
     summary.seconds = time.perf_counter() - started
     return summary
 
 
-def _prepare(out: str, plan: Plan, restart: bool) -> None:
-    """Make sure that what is in the folder is of this run, or nothing."""
+def _prepare(out: str, place: Path, plan: Plan, restart: bool) -> None:
+    """Make sure that what is in the folder, and in that of the record, is of this run, or nothing."""
+    if not restart:
+        refuse_older(place)
     shards = [name for name in remote.listing(f"{out}/data") if SHARD_NAME.fullmatch(name)]
     old = _record(out)
     if old is None:
         if shards or any(remote.size(f"{out}/{name}") is not None for name in (CARD, FONTS)):
             raise OutputError("holds files that are of no data set: give another folder", font=out)
     elif restart:
-        remove_unfinished(Path(out))  # of a store there is no such folder
+        shutil.rmtree(place / UNFINISHED, ignore_errors=True)
+        remove_record(place)
         for name in (*(f"data/{shard}" for shard in shards), FONTS, CARD, RECORD):
             if remote.size(f"{out}/{name}") is not None:
                 remote.remove(f"{out}/{name}")
@@ -191,7 +197,7 @@ def _record(out: str) -> dict[str, Any] | None:
     return record
 
 
-def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) -> Summary:
+def _written(out: str, plan: Plan, record: Record, pool: Executor, observer: Observer | None) -> Summary:
     """Write the shards that are not finished, then the table of fonts and the card."""
     paths = {shard: f"{out}/{shard.name}" for shard in plan.shards}
     held = {shard: finished(path, mark_of(shard, plan)) for shard, path in paths.items()}
@@ -201,11 +207,10 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
     failed = sum(of_font.failed for fonts in held.values() if fonts is not None for of_font in fonts.values())
     watching = observer and (lambda done, total, new: observer(done, total, failed + new))
 
-    def opened(shard: Shard) -> Unfinished | None:
-        return None if remote.is_url(out) else Unfinished(Path(out, UNFINISHED), mark_of(shard, plan))
-
-    first = opened(left[0]) if left else None
-    known = first.chunks if first else 0
+    if left and not record.is_open:
+        record.begin()
+    first = Chunks(record, mark_of(left[0], plan)) if left else None
+    known = first.count if first else 0
     made = sum(map(len, islice(plan.chunks(left[0]), known))) if left else 0
     parts = run(
         RowsJob(plan.spec), (), pool, ordered=True, observer=watching, total=plan.glyphs,
@@ -214,19 +219,18 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
     )  # fmt: skip
 
     def of_shard(shard: Shard) -> Iterator[tuple[int, Made]]:
-        kept = first if shard == left[0] else opened(shard)
-        before = iter(kept or ())
-        for chunk in plan.chunks(shard):
-            number, own = numbers[chunk[0].font.key], next(before, None)
-            if own is None:
+        kept = first if first and shard == left[0] else Chunks(record, mark_of(shard, plan))
+        for k, chunk in enumerate(plan.chunks(shard)):
+            if k < kept.count:
+                own = kept.chunk(k)
+            else:
                 own, done = [], 0
                 while done < len(chunk):
                     part = next(parts)
                     own.append(part.result)
                     done += len(part.tasks)
-                if kept:
-                    kept.add(own)
-            yield from ((number, one) for one in own)
+                kept.add(k, own)
+            yield from ((numbers[chunk[0].font.key], one) for one in own)
 
     shapes, following = Shapes(), len(left)
     layout = schema(plan.spec, of_fonts=True)
@@ -238,7 +242,7 @@ def _written(out: str, plan: Plan, pool: Executor, observer: Observer | None) ->
             add_shapes(paths[shard], shapes)
         for number, of_font in fonts.items():
             totals[number] = totals.get(number, OfFont()).plus(of_font)
-    remove_unfinished(Path(out))
+    record.remove()
     sizes = {shard: size for shard, path in paths.items() if (size := remote.size(path)) is not None}
     if gone := [path for shard, path in paths.items() if shard not in sizes]:
         raise OutputError("is gone while the data set is written", font=gone[0])

@@ -80,14 +80,9 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
         if any(target.exists() and target.samefile(file) for file, target in targets.items()):
             raise OutputError("holds the drawings themselves: --in-place writes into these", font=str(out))
     found: dict[Path, Rewritten | str] = {}
-    quiet = how.quiet or how.as_json
+    jobs = None if how.scheduler else how.processes
     with (
-        workers(
-            None if how.scheduler else how.processes,
-            kinds=[*kinds_for(options), "distances"],
-            expected=1,
-            scheduler=how.scheduler,
-        ) as pool,
+        workers(jobs, kinds=[*kinds_for(options), "distances"], expected=1, scheduler=how.scheduler) as pool,
         progress(how.quiet, json_lines=how.as_json) as observer,
     ):
         for part in run(
@@ -102,7 +97,7 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
         raise GlyphsplineError(only, font=str(files[0]))
     if how.as_json:
         print_json(facts(found))
-    for line in () if quiet else lines(found):
+    for line in () if how.quiet or how.as_json else lines(found):
         say(line)
     return any(isinstance(one, str) or one.unread for one in found.values())
 

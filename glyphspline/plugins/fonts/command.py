@@ -63,11 +63,11 @@ def refit(
         subset = opt.Subset(all_glyphs=True)
     spec = replace(spec, masters=masters)
     for name, given, why in (
-        ("--location", instance.location, "masters are of the whole design space"),
-        (f"--jobs {run.jobs}", run.scheduler, "masters are converted on this machine"),
+        ("location", instance.location, "masters are of the whole design space"),
+        ("jobs", run.scheduler, "masters are converted on this machine"),
     ):
         if masters and given:
-            stop(f"{name} is not for --masters: {why}")
+            stop(f"--{name} {given} is not for --masters: {why}")
     with kept(out) as folder, workplace(run, spec) as executor:
         call = Conversion(folder, spec, subset, instance, run, out is not None)
         if masters:

@@ -13,8 +13,8 @@ from ...files import write_whole
 from ...fitting.options import Options
 from ...fitting.results import GlyphResult
 from ...readers import Source, open_font
+from ...runs.whole_formats import ResultsFormat
 from ...types import counted, shortened
-from ...writers.formats import ResultsFormat
 from .read_back import Held, Promise, held
 from .tables.font_glyphs import ROUNDING, Flavour, fitting_tolerance
 

@@ -10,7 +10,7 @@ from ...errors import OptionError
 from ...fields import WRITTEN, option
 from ...fitting.options import Options
 from ...runs.spec import POLYGON, RESULTS, RunSpec
-from ...writers.formats import WholeFormat
+from ...runs.whole_formats import WholeFormat
 
 if TYPE_CHECKING:
     from ...readers import Source

@@ -201,24 +201,24 @@ class _Fits(NamedTuple):
         Contours that cross or collapse at a corner where their source does not are fitted more closely, as those of
         single outlines are.
         """
-        from ...fitting.faithful import Search
-        from ...fitting.topology import changed
+        from ...fitting.faithful import Trial, tries
+        from ...fitting.first_good import first_good
 
-        every = list(range(len(self.numbers)))
-        search = Search(
-            np.array([0, len(every)]), self.fitted(every, SHARP_TRIES[0]),
-            compare=lambda a, b, results: changes_at(self.mixes, results),
-            is_outside=lambda result: not result.within_tolerance,
-        )  # fmt: skip
-        for share in SHARP_TRIES[1:]:
-            search.attempt(changed(search.found), partial(self.fitted, share=share))
-        new, collapsed = search.kept
+        def judged(results: Sequence[MastersContourResult]) -> Trial[MastersContourResult]:
+            return Trial(results, changes_at(self.mixes, results))
+
+        first = judged(self.fitted(range(len(self.numbers)), SHARP_TRIES[0]))
+        closer = [partial(self.fitted, share=share) for share in SHARP_TRIES[1:]]
+        best = first_good(
+            tries(first, closer, judged), lambda trial: trial.wrong(lambda result: not result.within_tolerance)
+        )
+        new, collapsed = best.found
         most = [None if (own < 0).any() else int(own.max()) for own in new.T]
         measured = [
             replace(result, new_crossings=count, collapsed=lost)
-            for result, count, lost in zip(search.best, most, collapsed.any(axis=0).tolist(), strict=True)
+            for result, count, lost in zip(best.results, most, collapsed.any(axis=0).tolist(), strict=True)
         ]
-        return measured, search.kept
+        return measured, best.found
 
     def fitted(self, which: Sequence[int], share: float) -> list[MastersContourResult]:
         """Contours fitted within a share of the tolerance."""

@@ -1,6 +1,6 @@
 """A run over the masters of a variable font, or of single fonts that become one: a variable font or designspace out.
 
-Each glyph's result is a file, and a line of the journal, so that an interrupted run goes on where it was. The fonts are
+Each glyph's result is a file, and a row of the record, so that an interrupted run goes on where it was. The fonts are
 written from these files at the end, glyph by glyph: results of a whole CJK font need not fit into memory.
 """
 
@@ -33,16 +33,11 @@ from ...runs.engine import Item, Job, Observer, reason
 from ...runs.folder import (
     Done,
     Output,
-    Record,
+    Progress,
     Task,
-    conclude,
     done,
     entries_of,
-    locked,
-    prepare,
-    read_record,
-    recorded,
-    recorded_lines,
+    progress_of,
 )
 from ...runs.result_text import stored
 from ...runs.schedule import Place, place_of, sources
@@ -206,23 +201,20 @@ def convert_font_masters(
     else:
         wanted = list(glyphs)
     summary = MastersSummary()
-    with locked(out):
-        run = describe(first, spec, glyphs, None, sources[1:], axis)
-        prepare(out, spec, run, restart)
-        record = read_record(out)
+    run = describe(first, spec, glyphs, None, sources[1:], axis)
+    with progress_of(out, spec, run, restart) as progress:
         write_run(out, run)
         options = spec.options
         if "ttf" in spec.formats and not in_quadratics(spec):
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         job = MastersJob(out.absolute(), spec, places=tuple(map(place_of, sources)), axis=axis, options=options)
-        finished = record.finished()
-        left = [task for task in tasks_of(first, wanted, spec.names) if task.head.gid not in finished]
-        for _ in recorded(job, left, executor, record, out, observer):
+        left = [task for task in tasks_of(first, wanted, spec.names) if task.head.gid not in progress.finished]
+        for _ in progress.advance(job, left, executor, observer):
             pass
         for name in spec.folders:
             remove_partials(out / name)
-        written = _write_fonts(sources, _results(out, record, axis is not None), out, spec, summary, axis)
-        conclude(out, record, GALLERY in spec.formats, changed=partial(_with_written, *written))
+        written = _write_fonts(sources, _results(out, progress, axis is not None), out, spec, summary, axis)
+        progress.conclude(GALLERY in spec.formats, changed=partial(_with_written, *written))
         for entry in entries_of(out):
             summary.add(entry)
     summary.seconds = time.perf_counter() - began
@@ -264,11 +256,10 @@ def _flavours(spec: RefitSpec) -> list[Flavour]:
     return [flavour for flavour in ("otf", "ttf") if flavour in spec.formats]
 
 
-def _results(out: Path, record: Record, with_empty: bool) -> Mapping[str, Redrawn]:
+def _results(out: Path, progress: Progress, with_empty: bool) -> Mapping[str, Redrawn]:
     """The new contours of the folder's glyphs by name, each read from its file when it is asked for."""
     files = {}
-    for _, _, line in recorded_lines(out, record):
-        entry = json.loads(line)
+    for entry in map(json.loads, (known.line for known in progress.entries())):
         path = entry["files"].get(RESULTS)  # None in a run of drawings alone
         if path and (entry["status"] == "ok" or (with_empty and entry["status"] == "empty")):
             files[entry["glyph"]] = path

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...extras import need
 from ...outlines.contour_arrays import offsets_of
 from ...readers.characters import Run, Shaped, Shaper
 from ...types import BoolArray, FloatArray, IntArray
@@ -192,16 +193,12 @@ class Paragraph:
 
 def clusters(text: str) -> IntArray:
     """(k + 1,) where the k extended grapheme clusters of a text begin, and its length."""
-    from unicode_segmentation_rs import graphemes
-
-    return offsets_of([len(cluster) for cluster in graphemes(text, True)])
+    return offsets_of([len(cluster) for cluster in need("text").graphemes(text, True)])
 
 
 def line_ends(text: str) -> IntArray:
     """(k,) the places before which a new line may begin, ascending; the last is the length of the text."""
-    from unicode_segmentation_rs import line_breaks
-
-    places = np.array([place for place, _ in line_breaks(text)], dtype=np.int64)
+    places = np.array([place for place, _ in need("text").line_breaks(text)], dtype=np.int64)
     if text.isascii():
         return places
     units = np.frombuffer(text.encode(), dtype=np.uint8)

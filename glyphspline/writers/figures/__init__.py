@@ -1,1 +1,4 @@
-"""Drawings by matplotlib: PNG, PDF and the atlas."""
+"""Drawings by matplotlib: PNG and PDF.
+
+In: a result; out: bytes. Read first: :mod:`.drawings`.
+"""

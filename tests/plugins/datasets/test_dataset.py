@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import time
@@ -99,7 +100,7 @@ def test_the_bytes_do_not_depend_on_the_number_of_workers(whole: Path, tmp_path:
 MAKE = """
 import sys, time
 import glyphspline as gs
-from glyphspline.datasets.spec import DatasetSpec, Sizes
+from glyphspline.plugins.datasets.spec import DatasetSpec, Sizes
 sizes = Sizes(shard=25, chunk=10, group=10)
 wait = lambda done, total, failed: time.sleep(0.15)
 gs.dataset(sys.argv[1], sys.argv[2], DatasetSpec(options=None, points=8), jobs=0, observer=wait, sizes=sizes)
@@ -162,18 +163,18 @@ def test_a_run_that_was_stopped_within_a_shard_keeps_its_glyphs(
     glyphs, out = len(rows_of(one_shard)), tmp_path / "stopped"
     with pytest.raises(StoppedError):
         dataset(FONTS, out, SOME, jobs=0, observer=until, sizes=ONE)
-    kept, made = out / ".unfinished", sum(counts)
-    last = max(kept.iterdir(), key=lambda file: int(file.name))
+    kept, made = out / ".record.sqlite", sum(counts)
     assert not list(out.glob("data/*.parquet"))
     if damage == "link":
         kept.rename(tmp_path / "victim")
         kept.symlink_to(tmp_path / "victim")
     elif damage:
-        data = last.read_bytes()
-        middle = len(data) // 2
-        last.write_bytes(
-            data[:-1] if damage == "cut" else data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
-        )
+        with sqlite3.connect(kept) as db:
+            number, rows = db.execute("select max(number), rows from batch").fetchone()
+            middle = len(rows) // 2
+            torn = rows[:-1] if damage == "cut" else rows[:middle] + bytes([rows[middle] ^ 1]) + rows[middle + 1 :]
+            db.execute("update batch set rows = ? where number = ?", (torn, number))
+        db.close()
     counts.clear()
     dataset(FONTS, out, SOME, jobs=0, sizes=ONE)
     again = sum(counts) - (glyphs - made)

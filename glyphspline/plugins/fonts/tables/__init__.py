@@ -1,1 +1,4 @@
-"""Tables of fonts: outlines of one master or of several."""
+"""Tables of fonts: outlines in ``glyf`` and ``CFF``.
+
+In: results; out: a font. Read first: :mod:`.font_file`.
+"""

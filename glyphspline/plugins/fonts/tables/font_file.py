@@ -26,6 +26,7 @@ from fontTools.ttLib import TTFont, newTable
 from fontTools.varLib.instancer import instantiateVariableFont
 
 from ....errors import FontError, GlyphsplineError
+from ....extras import need
 from ....fitting.results import GlyphResult
 from ....outlines.outline import Outline
 from ....readers import Font, Source
@@ -241,12 +242,10 @@ def share_subroutines(font: TTFont) -> bool:
     Those with decimals, which ``tx`` rounds to hundredths, are put back as they were, and share nothing. Returns
     whether ``tx`` could do it; if not, the font is not to be written.
     """
-    from cffsubr import Error, subroutinize
-
-    exact = _with_decimals(font)
+    tx, exact = need("fonts"), _with_decimals(font)
     try:
-        subroutinize(font)
-    except Error as error:
+        tx.subroutinize(font)
+    except tx.Error as error:
         log.warning("char strings share no subroutines: %s", error)
         return False
     strings = font["CFF "].cff.topDictIndex[0].CharStrings
