@@ -1,7 +1,7 @@
 """Readers: files to outlines, and characters to glyphs.
 
-In: fonts and sources; out: :class:`.Outline`, by name, index or character. Read first: :mod:`.source`, then
-:mod:`.open`.
+In: fonts and sources; out: :class:`.Outline`, by name, index or character. Read first:
+:mod:`.source`, then :mod:`.open`.
 """
 
 from .open import open_source

@@ -151,6 +151,9 @@ class RunSpec:
                 raise OptionError(f"no format {name}: there are {', '.join(available())}{hooks.away_words()}")
             if name != GALLERY and is_format(name):
                 format_named(name)  # raises where a plug-in is broken
+        known = {*OURS, GALLERY}.issuperset(self.formats)
+        order = (*OURS, GALLERY) if known else available()
+        object.__setattr__(self, "formats", tuple(name for name in order if name in self.formats))
         for whole in self.whole:
             if whole.verb != self.verb:
                 line = f"glyphspline {whole.verb} FONT --format {whole.name} --out DIR"
@@ -162,9 +165,6 @@ class RunSpec:
             if not isinstance(getattr(self, name), kind):
                 raise GlyphsplineError(f"{name} are {kind.__name__}")
         self.settings.look.line(1.0)  # raises for a width on paper without a size
-        known = {*OURS, GALLERY}.issuperset(self.formats)
-        order = (*OURS, GALLERY) if known else available()
-        object.__setattr__(self, "formats", tuple(name for name in order if name in self.formats))
 
     @cached_property
     def whole(self) -> tuple[WholeFormat, ...]:

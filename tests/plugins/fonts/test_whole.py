@@ -38,7 +38,7 @@ def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
     summary = convert_font(source, source.select(text=TEXT), folder, SPEC, jobs=0)
     assert "within" in next(remark for remark in summary.remarks if "as read back" in remark)
     assert [remark.split(":")[0] for remark in summary.remarks if "as read back" not in remark] == [
-        f"KouzanGyoshoSubset-spline.{name}" for name in ("ufo", "otf", "ttf")
+        f"KouzanGyoshoSubset-spline.{name}" for name in ("otf", "ttf", "ufo")
     ]
     return folder
 
