@@ -142,11 +142,11 @@ def arguments(value: Any, default: Any, unshown: Collection[str] = ()) -> dict[s
         found["preset"] = ["--preset", preset]
         default = replace(default, **value.presets[preset])
     known = {one.name: one for one in options_of(value.__class__)}
-    for name in (one.name for one in fields(value)):
+    for name in (one.name for one in fields(value) if one.name not in unshown):
         own, usual = getattr(value, name), getattr(default, name)
         if is_dataclass(own) and usual is not None:
             found[name] = list(chain(*arguments(own, usual, unshown).values()))
-        elif name in known and name not in unshown and own != usual:
+        elif name in known and own != usual:
             flag, _, off = known[name].flags[0].partition("/")
             switch = {True: [flag], False: [off]} if isinstance(own, bool) else {}
             found[name] = switch.get(own) or [flag, text_of(own, known[name].about)]

@@ -64,9 +64,7 @@ class Appearance:
     """
 
     view_box: ViewBox = option("em", "Show this region.", LOOK)
-    size: str | None = option(
-        None, "Set the drawing's height instead, as 20mm; the width is in proportion.", LOOK, "LENGTH", flags="--height"
-    )  # fmt: skip
+    size: str | None = checked(None)
     fill: str = option(CURRENT, "Colour the ink: a CSS name, #rrggbb, none or currentColor.", LOOK)
     stroke: str = option("none", "Draw a thin line along the outline, in such a colour.", LOOK)
     em: str | None = option(None, "Set how large an em is: 12pt, 20mm.", LOOK, "LENGTH", flags="--size")

@@ -96,14 +96,14 @@ def test_run_json_has_the_options_in_effect_the_selection_and_the_command(font: 
 
 
 def test_the_command_of_a_run_has_how_its_drawings_look(font: Font, tmp_path: Path) -> None:
-    look: dict[str, Any] = {"view_box": "ink", "size": "20mm", "fill": "none", "stroke": "red"}
+    look: dict[str, Any] = {"view_box": "ink", "em": "20mm", "fill": "none", "stroke": "red"}
     given = look | {"comb": "source", "names": "gid"}
     settings = Settings(Appearance(**look))
     spec = RunSpec(Options(step=90), ("svg",), settings, names="gid", maps=Maps("source", corner_teeth=True))
     convert_font(font, font.select(text="O"), tmp_path, spec, jobs=0)
     told = shlex.split(json.loads((tmp_path / "run.json").read_text())["command"])
     for name, value in given.items():
-        option = "--height" if name == "size" else f"--{name.replace('_', '-')}"
+        option = "--size" if name == "em" else f"--{name.replace('_', '-')}"
         assert told[told.index(option) + 1] == value
 
 

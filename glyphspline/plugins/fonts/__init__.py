@@ -1,4 +1,4 @@
-"""Outlines put back into fonts and sources: fits as fonts store them, and writers of tables, UFO and Glyphs files.
+"""Outlines put back into fonts and sources: fits as fonts store them, and writers of tables and UFOs.
 
 Needs no other plug-in. In: results, or outlines; out: fonts and sources. Read first: :mod:`.fit.fit`.
 """

@@ -21,15 +21,11 @@ from .spec import RefitSpec
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
-OF_DRAWINGS = ("settings", "maps", "names")
-OF_SPLINES = ("variant", "step", "count", "measure")
-"""What ``convert`` alone asks for: how results are drawn, and curves that fonts do not store."""
-
 
 @bare
 def refit(
     sources: opt.FontFiles,
-    spec: Annotated[RefitSpec, without(*OF_DRAWINGS, *OF_SPLINES)],
+    spec: Annotated[RefitSpec, without(*RefitSpec.unshown)],
     subset: opt.Subset,
     instance: opt.Instance,
     run: opt.RunOptions,
@@ -113,9 +109,9 @@ def in_all_masters(sources: Sequence[Path], call: Conversion, axis: str | None, 
     """Fit a family in all masters at once; whether something was not done."""
     names, summary = service("refit_masters")(sources, call, axis, executor)
     facts = {"font": str(sources[0]), "out": str(call.out), **summary.facts()}
-    if not (call.run.quiet or call.run.as_json):
-        for line in summary.lines():
-            say(line)
     if call.run.as_json:
         print_json(facts)
+    elif not call.run.quiet:
+        for line in summary.lines():
+            say(line)
     return bool(names.missing or summary.failed or summary.outside)

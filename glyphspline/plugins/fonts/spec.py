@@ -28,6 +28,7 @@ class RefitSpec(RunSpec):
         keep_name: whether written fonts have the source's family name.
         in_place, layer: write new outlines into the source, in place of the old ones or into a layer beside them.
         masters: all masters of a variable font at once.
+        unshown: what ``convert`` alone asks for: how results are drawn, and curves that fonts do not store.
 
     Raises:
         OptionError: as :class:`.RunSpec`; or both ``in_place`` and ``layer``.
@@ -59,7 +60,8 @@ class RefitSpec(RunSpec):
         WRITTEN, "[NAME]",
     )  # fmt: skip
 
-    verb, needs_formats, unshown = "refit", False, ("measure",)
+    verb, needs_formats = "refit", False
+    unshown = ("settings", "maps", "names", "variant", "step", "count", "measure")
 
     def __post_init__(self) -> None:
         if self.in_place and self.layer is not None:

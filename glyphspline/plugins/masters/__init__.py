@@ -1,4 +1,4 @@
-"""Variable fonts and designspaces: all masters of a glyph as one curve.
+"""Variable fonts, designspaces and Glyphs files: all masters of a glyph as one curve.
 
 Needs checks and fonts. In: masters; out: results in all masters, variable fonts. Read first: :mod:`.convert_masters`.
 """

@@ -49,7 +49,7 @@ def text(
     ],
     lines: TextOptions,
     options: Annotated[Options, without("measure")],
-    settings: Annotated[Settings, without("size")],
+    settings: Settings,
     maps: Maps,
     drawings: DrawingOptions,
     run: Annotated[opt.RunOptions, only("config", "quiet")],

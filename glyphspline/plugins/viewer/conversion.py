@@ -129,7 +129,7 @@ class Work:
             return shlex.join(["glyphspline", "atlas", *words])
         if options.is_for_fonts:
             verb, words = "refit", [*words, "--format", "svg"]
-            own = arguments(options, Options(corners="sharp", continuity="g2"))
+            own = arguments(options, Options(corners="sharp", continuity="g2"), ("variant",))
         else:
             verb, own = "convert", arguments(options, Options(), RunSpec.unshown)
         return shlex.join(["glyphspline", verb, *words, *chain(*own.values()), "--out", f"outputs/gid-{gid}"])

@@ -490,8 +490,8 @@ def test_a_font_is_written_with_one_result_in_memory_at_a_time(
 @pytest.mark.parametrize(
     ("more", "said"),
     [
-        (["--location", "wght=600"], "--location is not for --masters"),
-        (["--scheduler", "tcp://localhost:1"], "--scheduler is not for --masters"),
+        (["--location", "wght=600"], "--location wght=600 is not for --masters"),
+        (["--jobs", "tcp://localhost:1"], "--jobs tcp://localhost:1 is not for --masters"),
         (["--axis", "wght=400:900"], "one font has masters of its own"),
         ([str(CFF2)], "become masters on --axis"),
         ([str(CFF2), "--axis", "wght=400", "--format", "ttf"], "an axis is like"),
