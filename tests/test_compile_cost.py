@@ -28,7 +28,6 @@ MOST_SECONDS = 5.0
 
 LONG = {
     "glyphspline.fitting.sharp.vertex_steps.move_vertices": 9.0,
-    "glyphspline.fitting.sharp.font_fit.fit_contours": 30.0,
 }
 """Functions that still take longer, and how long at most."""
 

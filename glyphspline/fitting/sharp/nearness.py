@@ -100,6 +100,17 @@ def sample_form(
 
 
 @compiled
+def own_form(p: FloatArray, Q: FloatArray, unit: float, form: FloatArray) -> float:
+    """:func:`sample_form` of a cubic with the ends that samples (n, 2) have, at the feet of these."""
+    n = len(Q)
+    c, x, e, weight = np.empty((3, 2)), np.empty(n), np.empty(n), np.ones(n)
+    for k in range(n):
+        x[k] = k / (n - 1)
+    feet(p, Q, c, x, e)
+    return sample_form(p, c, Q, x, weight, unit, form)
+
+
+@compiled
 def add_samples(
     p: FloatArray, c: FloatArray, Q: FloatArray, x: FloatArray, weight: FloatArray, J: FloatArray, unit: float,
     own: FloatArray, slip: float = 0.0,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from ...fitting.options import Options
@@ -20,9 +18,23 @@ ROUND = Contour(
 """Quadratics, as TrueType has them."""
 
 
-def outlines() -> Any:
-    """Outlines as fonts store them."""
-    return converted(Options(corners="sharp", continuity="g2", tolerance=0.3))
+OVAL = Contour(
+    np.array([
+        [400.0, 0], [400, 290], [165, 500], [0, 500], [-150, 500], [-400, 262], [-400, 0], [-400, -290], [-165, -500],
+        [0, -500], [150, -500], [400, -262],
+    ]),
+    np.full(4, 3),
+)  # fmt: skip
+"""Its curvatures jump, and do not meet with all cubics together."""
+
+
+def outlines() -> None:
+    """Outlines as fonts store them, once with curvatures that are let meet at one node after the other."""
+    from ...fitting.convert import convert
+
+    options = Options(corners="sharp", continuity="g2", tolerance=0.3)
+    converted(options)
+    convert(Outline("oval", contours=(OVAL,)), options)
 
 
 def quadratics() -> None:

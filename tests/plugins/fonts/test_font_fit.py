@@ -21,8 +21,8 @@ from glyphspline.outlines.flaws.kinds import KINK
 from glyphspline.outlines.outline import Contours
 from glyphspline.outlines.segments import all_cubics
 from glyphspline.plugins.fonts.fit.fit import ONE, TURNING, findings
-from glyphspline.plugins.fonts.fit.gates import Limits, misses
-from glyphspline.plugins.fonts.fit.harmony import AXIS, FIXED, Run, end_jump, harmonise
+from glyphspline.plugins.fonts.fit.gates import misses
+from glyphspline.plugins.fonts.fit.harmony import end_jump, harmonise
 from glyphspline.plugins.fonts.fit.points import (
     of_points,
     quadratic_points,
@@ -30,6 +30,7 @@ from glyphspline.plugins.fonts.fit.points import (
     stored_points,
     with_cut_lines,
 )
+from glyphspline.plugins.fonts.fit.run_nodes import Guide, Run
 from glyphspline.plugins.fonts.tables.font_file import write_font
 from glyphspline.types import FloatArray
 from tests.places import FONTS, GYOSHO
@@ -127,10 +128,13 @@ def test_jumps_of_curvature_that_may_stay_move_nothing() -> None:
     most = max(end_jump(source[s - 1], source[s], 1000.0) for s in range(4))
     for slack in (most + 0.01, 0.0):
         run = Run(
-            source.copy(), np.zeros(4, np.bool_), np.full(5, AXIS), joints.leaving[0].copy(), np.arange(5),
+            source.copy(), np.zeros(4, np.bool_), np.empty(5, np.int64), np.empty((5, 2)), np.arange(5),
             np.zeros(4, np.int64), np.ones(5), np.full(5, slack), True,
         )  # fmt: skip
-        harmonise(run, joints, 0, 1.0, 1000.0)
+        guide = Guide(
+            joints.samples[0], joints.first, joints.corner, np.ones(5, np.bool_), joints.arriving[0], joints.leaving[0]
+        )
+        harmonise(run[:], guide[:], 1.0, 1000.0)
         stays, met = np.abs(run.P - source).max() < 1e-6, jumps(run.P, 1000.0) == 0
         assert (stays, met) == (slack > 0, slack == 0)
 
@@ -407,8 +411,7 @@ def test_a_handle_may_move_by_as_much_as_the_tolerance() -> None:
     source = np.array([[[0, 0], [0, 10], [10, 30], [40, 30]], [[40, 30], [27, 20], [13, 10], [0, 0]]], dtype=np.float64)
     moved = source[None, :1].copy()
     moved[0, 0, 1, 1] += 1.0
-    kinds, places, none = np.full(2, FIXED), np.arange(2), np.zeros(1, dtype=np.int64)
-    run = Run(moved[0], none.astype(np.bool_), kinds, np.zeros((2, 2)), places, none, np.ones(2), np.zeros(2), False)
-    assert not misses(moved, run, source[None], 0, Limits(1.0, 1000.0, 4, ONE, ONE), 0.999).any()
+    of = (np.arange(2), np.zeros(1, np.bool_), False, 0, source[None], source, ONE)
+    assert not misses(moved, *of, 0.999).any()
     moved[0, 0, 1, 1] += 3.0
-    assert misses(moved, run, source[None], 0, Limits(1.0, 1000.0, 4, ONE, ONE), 0.999).all()
+    assert misses(moved, *of, 0.999).all()

@@ -8,10 +8,10 @@ import numpy as np
 
 from ....compiled import compiled
 from ....curves.cubics import directions, hidden_extrema, length
-from ....fitting.sharp.corners import NO_HANDLE, Joints, turn_between
+from ....fitting.sharp.corners import NO_HANDLE, turn_between
 from ....fitting.sharp.nearness import certified
 from ....types import BoolArray, FloatArray, IntArray
-from .harmony import Run, end_jump
+from .harmony import end_jump
 
 CORNER = np.radians(12.5)
 """Turn that a corner keeps."""
@@ -21,6 +21,10 @@ KINK = np.radians(0.48)
 
 MORE, SINGLE = 0.02, 0.5
 """By how much more curvatures may jump where they do in the source: of cubics, and of single segments off the grid."""
+
+
+DISTANCE, TURNS, ALL = range(3)
+"""Gates: the certified distance; that and turns; those, jumps of curvature, extrema and handles."""
 
 
 class Limits(NamedTuple):
@@ -99,89 +103,132 @@ def joint_turn(before: FloatArray, behind: FloatArray) -> float:
 
 
 @compiled
-def misses(P: FloatArray, run: Run, source: FloatArray, i: int, limits: Limits, share: float) -> BoolArray:
-    """(r,) which cubics of a run are not certified within the tolerance of the source, in the whole design space.
+def misses(
+    P: FloatArray, places: IntArray, held: BoolArray, closed: bool, i: int, source: FloatArray, outline: FloatArray,
+    corners: FloatArray, tolerance: float,
+) -> BoolArray:  # fmt: skip
+    """(r,) which cubics of a run are not certified within a tolerance of the source, in the whole design space.
 
     The run begins at joint i of the source. Every cubic is paired by itself with a stretch of the source.
 
     Args:
-        P: (K, r, 4, 2) the cubics in all masters. run: those of one. source: (K, m, 4, 2).
+        P: (K, r, 4, 2) the cubics in all masters. places, held, closed: of :class:`.run_nodes.Run`.
+        source: (K, m, 4, 2). outline: (m V, 4, 2) that, and corners: (V, K) the weights, at the design space's corners.
     """
-    V, arc = len(limits.corners), np.empty(0)
-    chain, other = mixed(limits.corners, P), mixed(limits.corners, source)
-    if len(source) > 1:
-        arc = np.array([0.0, len(run.P), i, i + run.places[-1]])
-        if run.closed:
-            arc[::2], arc[1::2] = -np.inf, np.inf
-    hints = (i + run.places).astype(np.float64)
-    enough, r, m, stays = share * limits.tolerance, len(run.P), source.shape[1], np.empty(len(run.P) + 1, np.bool_)
+    (K, r), m, V = P.shape[:2], source.shape[1], len(corners)
+    arc = np.empty(4 if K > 1 else 0)
+    if K > 1:
+        arc[0], arc[1], arc[2], arc[3] = 0.0, r, i, i + places[r]
+        if closed:
+            arc[0], arc[1], arc[2], arc[3] = -np.inf, np.inf, -np.inf, np.inf
+    hints, stays, far = np.empty(r + 1), np.ones(r + 1, np.bool_), np.empty(r, np.bool_)
     for s in range(r + 1):
+        hints[s] = i + places[s]
         q, end = (s, 0) if s < r else (r - 1, 3)
-        stays[s] = (P[:, q, end] == source[:, (i + run.places[s]) % m, 0]).all()
-    return ~(certified(V, chain, hints, stays, run.held, run.closed, other, arc, enough) <= enough)
+        for v in range(K):
+            for axis in range(2):
+                stays[s] = stays[s] and P[v, q, end, axis] == source[v, (i + places[s]) % m, 0, axis]
+    bounds = certified(V, mixed(corners, P), hints, stays, held, closed, outline, arc, tolerance)
+    for s in range(r):
+        far[s] = not bounds[s] <= tolerance
+    return far
 
 
 @compiled
-def mark_joints(run: Run, cubics: FloatArray, i: int, em: float, single: BoolArray, bad: BoolArray) -> None:
-    """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may
-    not, and those with new extrema inside.
+def mark_joints(
+    P: FloatArray, places: IntArray, extrema: IntArray, closed: bool, i: int, source: FloatArray, em: float,
+    single: BoolArray, bad: BoolArray,
+) -> None:  # fmt: skip
+    """Mark the cubics of a rounded run in one master whose handles cross, or whose curvature jumps, and may not, and
+    those with new extrema inside.
 
     Args:
+        P: (r, 4, 2) the cubics. places, extrema, closed: of :class:`.run_nodes.Run`. source: (m, 4, 2).
         single: (n,) segments of the source that are put on the grid by themselves.
     """
-    r, m, P = len(run.P), len(cubics), run.P
+    r, m = len(P), len(source)
     for s in range(r):
-        alone = run.places[s + 1] - run.places[s] == 1
+        alone = places[s + 1] - places[s] == 1
         if crosses_handles(P[s]):
-            bad[s] = bad[s] or not alone or not crosses_handles(cubics[(i + run.places[s]) % m])
-        bad[s] = bad[s] or hidden_extrema(P[s]) > run.extrema[s]
-    for s in range(0 if run.closed else 1, r):
-        k, a = (i + run.places[s]) % m, s - 1 if s > 0 else r - 1
-        more = SINGLE if single[run.places[a]] or single[run.places[s]] else MORE
-        wrong = end_jump(P[a], P[s], em) > max(end_jump(cubics[k - 1], cubics[k], em) + more, 0.1)
+            bad[s] = bad[s] or not alone or not crosses_handles(source[(i + places[s]) % m])
+        bad[s] = bad[s] or hidden_extrema(P[s]) > extrema[s]
+    for s in range(0 if closed else 1, r):
+        k, a = (i + places[s]) % m, s - 1 if s > 0 else r - 1
+        more = SINGLE if single[places[a]] or single[places[s]] else MORE
+        wrong = end_jump(P[a], P[s], em) > max(end_jump(source[k - 1], source[k], em) + more, 0.1)
         bad[a], bad[s] = bad[a] or wrong, bad[s] or wrong
 
 
 @compiled
 def mark_turns(
-    P: FloatArray, run: Run, cubics: FloatArray, joints: Joints, i: int, mixes: FloatArray, bad: BoolArray
-) -> None:
-    """Mark the cubics (K, r, 4, 2) of a rounded run at whose joints some mix of the masters turns more than it may."""
-    r, m, M = len(run.P), cubics.shape[1], len(mixes)
-    new, old = mixed(mixes, P), mixed(mixes, cubics)
-    for s in range(0, r if run.closed else r + 1):
-        k = (i + run.places[s]) % m
+    P: FloatArray, places: IntArray, closed: bool, i: int, old: FloatArray, mixes: FloatArray, corner: BoolArray,
+    bad: BoolArray,
+) -> None:  # fmt: skip
+    """Mark the cubics (K, r, 4, 2) of a rounded run at whose joints some mix of the masters turns more than it may.
+
+    Args:
+        places, closed: of :class:`.run_nodes.Run`. old: (m M, 4, 2) the source in the mixes (M, K). corner: (m + 1,).
+    """
+    r, M = P.shape[1], len(mixes)
+    m, new = len(old) // M, mixed(mixes, P)
+    for s in range(0, r if closed else r + 1):
+        k = (i + places[s]) % m
         a, q = (s - 1) % r, s % r
-        left = old[(k - 1) % m * M :] if s == 0 and not run.closed else new[a * M :]
+        left = old[(k - 1) % m * M :] if s == 0 and not closed else new[a * M :]
         right = old[k * M :] if s == r else new[q * M :]
         before, after, lost = 0.0, 0.0, False
         for v in range(M):
             turn, now = joint_turn(old[(k - 1) % m * M + v :], old[k * M + v :]), joint_turn(left[v:], right[v:])
             before, after, lost = max(before, turn), max(after, now), lost or now < min(turn, CORNER)
-        wrong = lost if joints.corner[k] else after > max(before, KINK)
-        if s > 0 or run.closed:
+        wrong = lost if corner[k] else after > max(before, KINK)
+        if s > 0 or closed:
             bad[a] = bad[a] or wrong
         if s < r:
             bad[q] = bad[q] or wrong
 
 
 @compiled
+def refused(
+    P: FloatArray, run: tuple[IntArray, IntArray, BoolArray, bool, int],
+    source: tuple[FloatArray, FloatArray, FloatArray, BoolArray], weights: tuple[FloatArray, FloatArray], em: float,
+    tolerance: float, gates: int, single: BoolArray,
+) -> BoolArray:  # fmt: skip
+    """(r,) the cubics (K, r, 4, 2) of a rounded run that one of the gates refuses.
+
+    Args:
+        run: its places, most extrema (K, r) inside, cubics that are held, whether it is closed, and its first joint.
+        source: the cubics (K, m, 4, 2), the outline at the corners and in the mixes, and (m + 1,) joints that are
+            corners. weights: the corners and the mixes of :class:`Limits`. gates: ``DISTANCE``, ``TURNS`` or ``ALL``.
+        single: see :func:`mark_joints`.
+    """
+    (places, extrema, held, closed, i), (cubics, outline, looks, corner), (corners, mixes) = run, source, weights
+    bad = misses(P, places, held, closed, i, cubics, outline, corners, tolerance)
+    if gates >= TURNS:
+        mark_turns(P, places, closed, i, looks, mixes, corner, bad)
+    for v in range(len(P) if gates == ALL else 0):
+        mark_joints(P[v], places, extrema[v], closed, i, cubics[v], em, single, bad)
+    return bad
+
+
+@compiled
 def jumps_of(cubics: FloatArray, degrees: IntArray, closed: bool, em: float) -> int:
     """The number of joints inside a run (K, n, 4, 2) at which curvatures jump by a tenth or more, in all masters."""
     count = 0
-    for own in cubics:
+    for v in range(len(cubics)):
         for k in range(0 if closed else 1, len(degrees)):
-            count += degrees[k - 1] > 1 and degrees[k] > 1 and end_jump(own[k - 1], own[k], em) > 0.1
+            jumps = degrees[k - 1] > 1 and degrees[k] > 1 and end_jump(cubics[v, k - 1], cubics[v, k], em) > 0.1
+            count += 1 if jumps else 0
     return count
 
 
 @compiled
 def on_grid(cubics: FloatArray, degrees: IntArray, closed: bool) -> bool:
-    """Whether all points of a run (K, r, 4, 2) are on the grid, but for its ends, which stay."""
+    """Whether all points of a run (K, r, 4, 2) are on the grid, but for its ends and those inside lines."""
     r = len(degrees)
     for s in range(r):
         for k in range(0 if s > 0 or closed else 1, 4 if s < r - 1 or closed else 3):
-            off = np.abs(cubics[:, s, k] - np.rint(cubics[:, s, k])) > 1e-6
-            if (degrees[s] > 1 or k % 3 == 0) and off.any():
-                return False
+            for v in range(len(cubics) if degrees[s] > 1 or k % 3 == 0 else 0):
+                for axis in range(2):
+                    if abs(cubics[v, s, k, axis] - np.rint(cubics[v, s, k, axis])) > 1e-6:
+                        return False
     return True

@@ -13,8 +13,8 @@ from ....fitting.sharp.corners import NO_HANDLE, SHARP, SMOOTH_KINK, Joints, fin
 from ....fitting.sharp.settings import Settings
 from ....types import BoolArray, FloatArray, IntArray
 from .chains import LEAST, OWN, REACH, SLACK
-from .contours import alone, set_upright
 from .gates import CORNER, KINK, mixed
+from .run_source import set_upright
 
 STEEP = np.radians(1.5)
 """Turn of a joint from which it stays where it is, with the turn it has."""
@@ -108,10 +108,10 @@ def read_joints(
     K, m, arriving, leaving = cubics.shape[0], cubics.shape[1], joints.arriving, joints.leaving
     upright, cuts, level = np.ones(m + 1, np.bool_), joints.corner.copy(), np.zeros(m + 1, np.bool_)
     way, turns = np.empty((2, K, m + 1, 2)), np.zeros((2, 4, m + 1))
+    own = set_upright(cubics, joints.corner, joints.line, joints.arriving, joints.leaving)
     for w in range(K):
-        own = set_upright(cubics[w], alone(joints, w))
         for j in range(m + 1):
-            upright[j] = upright[j] and own[j]
+            upright[j] = upright[j] and own[w, j]
     for j in range(m):
         for w in range(K):
             _, _, way[0, w, j, 0], way[0, w, j, 1] = directions(cubics[w], j - 1, NO_HANDLE)
