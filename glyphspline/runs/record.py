@@ -66,9 +66,11 @@ class Record:
     def __init__(self, path: Path) -> None:
         self._path, self.is_open, self.is_lost = path, False, False
         for each in _files(path):
-            if each.is_symlink():  # it could lead out of the folder
+            if (
+                each.is_symlink() or not path.exists()
+            ):  # a link could lead out of the folder, a log be of another record
                 with writing(each):
-                    each.unlink()
+                    each.unlink(missing_ok=True)
         if not path.exists():
             return
         try:

@@ -251,20 +251,19 @@ def file_name(path: str) -> str:
 
 @contextmanager
 def folder_of_record(out: str) -> Iterator[Path]:
-    """The folder with the record of a run: the output folder, or for a URL one in the user's cache.
-
-    Raises:
-        OutputError: that cannot be made.
-    """
+    """The folder with the record of a run: the output folder, or for a URL one in the user's cache, if there is one."""
     if not is_url(out):
         yield Path(out)
         return
-    folder = (
-        cache_folder("runs") / f"{re.sub(r'[^A-Za-z0-9]+', '-', out)[-50:]}-{sha256(out.encode()).hexdigest()[:16]}"
-    )
-    yield folder
-    with suppress(OSError):  # where another run has begun
-        folder.rmdir()
+    name = re.sub(r"[^A-Za-z0-9]+", "-", out)[-50:] + f"-{sha256(out.encode()).hexdigest()[:16]}"
+    with tempfile.TemporaryDirectory(prefix="glyphspline-") as passing:
+        try:
+            folder = cache_folder("runs") / name
+        except OutputError:  # the run goes on after the last finished shard
+            folder = Path(passing) / name
+        yield folder
+        with suppress(OSError):  # another run has begun there
+            folder.rmdir()
 
 
 def cache_folder(name: str) -> Path:
