@@ -10,7 +10,7 @@ from .errors import GlyphsplineError
 
 EXTRAS = {
     "overlaps": ("removing overlaps", "pathops"),
-    "fonts": ("fonts with CFF outlines", "cffsubr"),
+    "fonts": ("writing an otf", "cffsubr"),
     "text": ("text on lines", "unicode_segmentation_rs"),
     "cad": ("DXF", "ezdxf"),
     "parquet": ("Parquet", "pyarrow"),

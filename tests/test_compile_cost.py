@@ -87,14 +87,23 @@ class Times(event.Listener):
         if self.open:
             self.open[-1][1] += whole
 
-times = Times()
+def turns():
+    began, s = time.process_time(), 0
+    for i in range(10_000_000):
+        s += i
+    return time.process_time() - began
+
+times, units = Times(), [turns()]
 event.register("numba:compile", times)
 for kind in work():
     compile_kind(kind)
+    units.append(turns())
+print(sorted(units)[len(units) // 2])
 for name, seconds in sorted(times.own.items(), key=lambda one: -one[1]):
     print(f"{seconds:.2f} {name}")
 """
-"""A program that compiles everything, and prints the processor time of each function, the longest first."""
+"""A program that compiles everything, and prints the processor time of ten million turns of ``s += i``, and of each
+function, the longest first."""
 
 
 @pytest.mark.long
@@ -105,6 +114,8 @@ def test_no_function_compiles_for_long(tmp_path: Path) -> None:
         capture_output=True, text=True, check=True,
     )  # fmt: skip
     sys.stdout.write(found.stdout)
-    times = [line.split() for line in found.stdout.splitlines()]
-    assert len(times) > 300
-    assert not [name for seconds, name in times if float(seconds) > LONG.get(name, MOST_SECONDS)]
+    unit, *lines = found.stdout.splitlines()
+    times = [line.split() for line in lines]
+    assert len(times) > 250
+    slowness = float(unit) / 1.1
+    assert not [name for seconds, name in times if float(seconds) > slowness * LONG.get(name, MOST_SECONDS)]

@@ -18,6 +18,8 @@ from tests.places import FONTS, ROOT
 FONT = str(FONTS / "kouzan-gyosho.ttf")
 
 COMMANDS = {
+    "fonts": ["refit", FONT, "--text", "O", "--format", "otf"],
+    "text": ["text", FONT, "O", "--format", "svg"],
     "overlaps": ["convert", FONT, "--text", "O", "--remove-overlaps"],
     "parquet": ["convert", FONT, "--text", "O", "--format", "svg,parquet"],
     "cad": ["convert", FONT, "--text", "O", "--format", "dxf"],

@@ -76,7 +76,7 @@ class FontFormat(ResultsFormat):
 class Otf(FontFormat):
     """Cubics."""
 
-    name = "otf"
+    name, extra = "otf", "fonts"
 
 
 class Ttf(FontFormat):
