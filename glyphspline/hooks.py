@@ -56,25 +56,25 @@ class Plugin:
     names: Mapping[str, Place] = field(default_factory=dict)
 
 
-SERVICES: dict[str, str] = {
-    "axis_pages": "pages of glyphs along an axis: see :func:`.masters.axis_pages.axis_pages`",
-    "check_axis": "whether masters can be converted along an axis: source, tag, options",
-    "convert_masters": "results in all masters: :class:`.Masters` and options to a ``MastersResult``",
-    "cluster": "an executor on a dask cluster: its address, the time limit of a batch, kinds of work",
-    "fetch_fonts": "fonts behind a URL, in the user's cache: a URL, suffixes of fonts",
-    "g2_fits": "fits of continuity g2: options, tolerance and em in font units, to :class:`.fitting.faithful.Fits`",
-    "kink_report": "parts of checks along axes as one report: see :func:`.masters.kinks.kink_report`",
-    "layout": "text on lines: see :func:`glyphspline.layout`",
-    "no_joints": "numbers of no joints along an axis: a :class:`.DesignAxis`",
-    "notebook": "display in notebooks: no arguments",
-    "on_axes": "checks of glyphs along axes: see :func:`.masters.on_axes.on_axes`",
-    "refit_drawings": "paths of drawings rewritten: with options, a folder or None for themselves, options of the run",
-    "refit_masters": "fits of a family in all masters: paths, the call of ``refit``, an axis or None, an executor",
-    "text_document": "a text as SVG: a layout and the results of its distinct glyphs",
-    "turns_figure": "the diagram of turns along axes: a source, a report, a format",
-    "variations": "the masters of a variable font's glyphs: see :class:`.masters.variations.Variations`",
+SERVICES: dict[str, tuple[str, str]] = {
+    "axis_pages": ("pages along an axis", "see :func:`.masters.axis_pages.axis_pages`"),
+    "check_axis": ("pages along an axis", "whether masters can be converted so: source, tag, options"),
+    "cluster": ("a cluster", "an executor on it: its address, the time limit of a batch, kinds of work"),
+    "convert_masters": ("all masters", "see :func:`glyphspline.convert_masters`"),
+    "fetch_fonts": ("a URL", "fonts behind it, in the user's cache: the URL, suffixes of fonts"),
+    "g2_fits": ("continuity g2", "fits: options, tolerance and em in font units, to :class:`.fitting.faithful.Fits`"),
+    "kink_report": ("kinks along axes", "parts of checks as one report: see :func:`.masters.kinks.kink_report`"),
+    "layout": ("text on lines", "see :func:`glyphspline.layout`"),
+    "no_joints": ("kinks along axes", "numbers of no joints along an axis: a :class:`.DesignAxis`"),
+    "notebook": ("display in notebooks", "no arguments"),
+    "on_axes": ("checks along axes", "see :func:`.masters.on_axes.on_axes`"),
+    "refit_drawings": ("refit of drawings", "paths, options, a folder or None for themselves, options of the run"),
+    "refit_masters": ("refit of masters", "paths, the call of ``refit``, an axis or None, an executor"),
+    "text_document": ("text on lines", "as SVG: a layout and the results of its distinct glyphs"),
+    "turns_figure": ("a diagram of turns along axes", "a source, a report, a format"),
+    "variations": ("the masters of a variable font", "see :class:`.masters.variations.Variations`"),
 }
-"""What services there are, and what each gets and returns."""
+"""What services there are: for what, and what each gets and returns."""
 
 
 @cache
@@ -132,7 +132,7 @@ def service(name: str) -> Any:
     """
     found = find("services", name)
     if found is None:
-        raise GlyphsplineError(f"{SERVICES[name]}: the plug-in for it is not there")
+        raise GlyphsplineError(f"{SERVICES[name][0]}: the plug-in for it is not there")
     return found
 
 

@@ -122,6 +122,26 @@ def test_all_plugins_can_be_taken_away(tmp_path: Path) -> None:
     assert "no format dxf" in refused.stderr
 
 
+OF_THE_PIPELINE = (
+    "curves", "interpolation", "fitting", "report", "outlines/test_sampling.py", "outlines/test_regions.py",
+    "readers/test_fonts.py", "readers/test_routes.py", "readers/test_selection.py", "readers/test_broken_fonts.py",
+    "readers/test_ufo.py", "writers/test_svg.py", "writers/test_drawings.py", "writers/test_curvature_map.py",
+    "runs/test_engine.py", "runs/test_pool.py", "runs/test_choice.py", "runs/test_run_files.py",
+)  # fmt: skip
+"""Tests that call no plug-in."""
+
+
+@pytest.mark.long
+def test_the_pipelines_tests_pass_without_any_plugin(tmp_path: Path) -> None:
+    environment = without(tmp_path, *NEEDS)
+    for name in ("tests", "scripts", "fonts_test", "docs", "pyproject.toml", "README.md"):
+        (tmp_path / name).symlink_to(ROOT / name)
+    chosen = [f"tests/{name}" for name in OF_THE_PIPELINE]
+    options = ["-q", "-p", "no:cacheprovider", "-m", "not long and not needs", "--rootdir", str(tmp_path)]
+    done = run(environment, "-m", "pytest", *options, *chosen)
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
 @pytest.fixture(scope="module")
 def stranger(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     """The environment of processes for which the example of the documents is installed."""

@@ -245,14 +245,6 @@ def test_workers_compile_the_spline_fit_before_their_time_limits_begin() -> None
     assert disc.measures.iterations
 
 
-def test_cubics_are_no_interpolation_that_was_iterated() -> None:
-    for contour in gs.convert(glyph("龍"), options(continuity="g2")).contours:
-        m = contour.measures
-        assert m.within_tolerance
-        assert (m.iterations, m.residual, m.converged, m.rate_bound, m.fallbacks) == (None,) * 5
-        assert all(len(arc.parameters) == 2 for arc in contour.interpolations)
-
-
 def test_measures_are_those_of_the_curve() -> None:
     for contour in gs.convert(glyph("龍"), options()).contours:
         form, source = shape(contour.curve.rounded(options().precision).cubics()), shape(contour.source.cubics())
@@ -302,16 +294,3 @@ def test_a_glyph_whose_overlaps_stay_is_converted_and_says_so() -> None:
     assert all(contour.measures.within_tolerance for contour in result.contours)
     (note,) = result.notes
     assert note.startswith("overlaps were left in")
-
-
-@pytest.mark.parametrize("handle", [0.0, 1.5])
-def test_a_segment_that_ends_where_it_begins_may_stay_as_it_is(handle: float) -> None:
-    """Flat, a loop is a spike there and back on the line: both halves of it end where they begin."""
-    corners = np.array([[0.0, 0.0], [200.0, 0.0], [500.0, 0.0], [500.0, 300.0], [0.0, 300.0]])
-    segments = [np.stack(pair) for pair in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
-    segments.insert(1, np.array([[200.0, 0.0], [202.0, handle], [198.0, handle], [200.0, 0.0]]))
-    outline = gs.Outline("loop", contours=(gs.Contour.from_segments(segments),))
-    (contour,) = gs.convert(outline, gs.Options(corners="sharp", continuity="g2", tolerance=0.5)).contours
-    assert np.isfinite(contour.curve.points).all()
-    assert contour.measures.deviation_bound is not None
-    assert true_distance(contour, 2) <= contour.measures.deviation_bound + 0.01

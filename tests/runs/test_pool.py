@@ -221,6 +221,7 @@ def test_workers_with_other_code_are_an_error(tmp_path: Path) -> None:
         "__init__.pyi",
         "_version.py",
         "errors.py",
+        "hooks.py",
         "code_files.py",
         "runs/__init__.py",
         "runs/pool.py",

@@ -33,6 +33,7 @@ from glyphspline.plugins.fonts.fit.points import (
 from glyphspline.plugins.fonts.fit.run_nodes import Guide, Run
 from glyphspline.plugins.fonts.tables.font_file import write_font
 from glyphspline.types import FloatArray
+from tests.fitting.test_faithful import true_distance
 from tests.places import FONTS, GYOSHO
 
 TEXT = "永龍好書山河風月草花鳥"
@@ -415,3 +416,26 @@ def test_a_handle_may_move_by_as_much_as_the_tolerance() -> None:
     assert not misses(moved, *of, 0.999).any()
     moved[0, 0, 1, 1] += 3.0
     assert misses(moved, *of, 0.999).all()
+
+
+def test_cubics_are_no_interpolation_that_was_iterated() -> None:
+    font = gs.open_font(FONTS / "kouzan-gyosho.ttf")
+    outline = font.outline(font.select(text="龍")[0])
+    for contour in gs.convert(outline, gs.Options(continuity="g2", precision=2)).contours:
+        m = contour.measures
+        assert m.within_tolerance
+        assert (m.iterations, m.residual, m.converged, m.rate_bound, m.fallbacks) == (None,) * 5
+        assert all(len(arc.parameters) == 2 for arc in contour.interpolations)
+
+
+@pytest.mark.parametrize("handle", [0.0, 1.5])
+def test_a_segment_that_ends_where_it_begins_may_stay_as_it_is(handle: float) -> None:
+    """Flat, a loop is a spike there and back on the line: both halves of it end where they begin."""
+    corners = np.array([[0.0, 0.0], [200.0, 0.0], [500.0, 0.0], [500.0, 300.0], [0.0, 300.0]])
+    segments = [np.stack(pair) for pair in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    segments.insert(1, np.array([[200.0, 0.0], [202.0, handle], [198.0, handle], [200.0, 0.0]]))
+    outline = gs.Outline("loop", contours=(gs.Contour.from_segments(segments),))
+    (contour,) = gs.convert(outline, gs.Options(corners="sharp", continuity="g2", tolerance=0.5)).contours
+    assert np.isfinite(contour.curve.points).all()
+    assert contour.measures.deviation_bound is not None
+    assert true_distance(contour, 2) <= contour.measures.deviation_bound + 0.01
