@@ -33,7 +33,7 @@ from glyphspline.plugins.fonts.fit.points import (
 from glyphspline.plugins.fonts.fit.run_nodes import Guide, Run
 from glyphspline.plugins.fonts.tables.font_file import write_font
 from glyphspline.types import FloatArray
-from tests.fitting.test_faithful import true_distance
+from tests.fitting.test_sharp import true_distance
 from tests.places import FONTS, GYOSHO
 
 TEXT = "永龍好書山河風月草花鳥"
