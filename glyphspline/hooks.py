@@ -62,6 +62,7 @@ SERVICES: dict[str, tuple[str, str]] = {
     "cluster": ("a cluster", "an executor on it: its address, the time limit of a batch, kinds of work"),
     "convert_masters": ("all masters", "see :func:`glyphspline.convert_masters`"),
     "fetch_fonts": ("a URL", "fonts behind it, in the user's cache: the URL, suffixes of fonts"),
+    "fit_masters": ("fits of all masters", "see :func:`.masters.job.convert_font_masters`"),
     "g2_fits": ("continuity g2", "fits: options, tolerance and em in font units, to :class:`.fitting.faithful.Fits`"),
     "kink_report": ("kinks along axes", "parts of checks as one report: see :func:`.masters.kinks.kink_report`"),
     "layout": ("text on lines", "see :func:`glyphspline.layout`"),

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
 
 from ...cli import arguments as opt
@@ -16,6 +14,7 @@ from ...cli.messages import print_json, say, stop
 from ...cli.tables import runs_facts, runs_table
 from ...fields import WRITTEN, About
 from ...hooks import service
+from .refit import kept, own_format
 from .spec import RefitSpec
 
 if TYPE_CHECKING:
@@ -79,30 +78,6 @@ def refit(
     if run.as_json:
         print_json(runs_facts(runs))
     return any(one.undone for one in runs)
-
-
-def own_format(paths: Sequence[Path], become_one: bool) -> tuple[str, bool]:
-    """The format of sources themselves, and whether they are of masters; of single fonts that ``become_one``, ttf."""
-    from ...readers.open import open_source, reader_of
-
-    readers = {path: reader_of(path) for path in paths}
-    found = {
-        reader.own if reader else "ttf" if become_one or open_source(path).outer < 0 else "otf"
-        for path, reader in readers.items()
-    }
-    if len(found) > 1:
-        stop(f"sources of several kinds, {', '.join(sorted(found))}: refit those of one kind, or say --format")
-    return found.pop(), all(reader is not None and reader.has_axes for reader in readers.values())
-
-
-@contextmanager
-def kept(out: Path | None) -> Iterator[Path]:
-    """The folder of a run; of one that writes into its source, a folder that goes at its end."""
-    if out is not None:
-        yield out
-        return
-    with TemporaryDirectory(prefix="glyphspline-") as folder:
-        yield Path(folder)
 
 
 def in_all_masters(sources: Sequence[Path], call: Conversion, axis: str | None, executor: Executor) -> bool:

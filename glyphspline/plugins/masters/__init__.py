@@ -13,6 +13,7 @@ PLUGIN = Plugin(
         "axis_pages": ".axis_pages:axis_pages",
         "check_axis": ".convert_masters:check_axis",
         "convert_masters": ".convert_masters:convert_masters",
+        "fit_masters": ".job:convert_font_masters",
         "kink_report": ".kinks:kink_report",
         "no_joints": ".kinks:no_joints",
         "on_axes": ".on_axes:on_axes",

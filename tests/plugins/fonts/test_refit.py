@@ -106,3 +106,14 @@ def test_convert_says_the_call_that_writes_fonts(name: str, tmp_path: Path) -> N
     assert line is not None
     assert refit(OTF, "--text", "O", *line[1].replace("DIR", str(tmp_path / "out")).split()).exit_code == 0
     assert list((tmp_path / "out").glob(f"*.{name}"))
+
+
+def test_python_refits_as_the_command_does(tmp_path: Path) -> None:
+    assert refit(OTF, "--glyphs", "O", "--out", tmp_path / "a").exit_code == 0
+    summary = gs.refit(OTF, tmp_path / "b", glyphs=["O"])
+    assert summary.statuses == {"ok": 1}
+    assert files(tmp_path / "a").keys() == files(tmp_path / "b").keys()
+    (name,) = (path for path in files(tmp_path / "a") if path.endswith(".otf"))
+    assert files(tmp_path / "a")[name] == files(tmp_path / "b")[name]
+    with pytest.raises(gs.OptionError, match="say where outlines go"):
+        gs.refit(OTF)
