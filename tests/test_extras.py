@@ -19,7 +19,7 @@ FONT = str(FONTS / "kouzan-gyosho.ttf")
 
 COMMANDS = {
     "fonts": ["refit", FONT, "--text", "O", "--format", "otf"],
-    "text": ["text", FONT, "O", "--format", "svg"],
+    "text": ["text", FONT, "O", "--width", "900", "--format", "svg"],
     "overlaps": ["convert", FONT, "--text", "O", "--remove-overlaps"],
     "parquet": ["convert", FONT, "--text", "O", "--format", "svg,parquet"],
     "cad": ["convert", FONT, "--text", "O", "--format", "dxf"],
