@@ -13,6 +13,7 @@ import pytest
 
 from glyphspline import hooks
 from glyphspline.cli.app import OWN
+from glyphspline.code_files import PLACE, own_folder
 from scripts.house import NEEDS, PACKAGE
 from tests.places import FONTS, ROOT
 
@@ -51,7 +52,7 @@ def without(folder: Path, *names: str) -> dict[str, str]:
         if path.name not in (*names, "__pycache__"):
             (copy / "plugins" / path.name).symlink_to(path)
     metadata(folder, "glyphspline", ENTRIES)
-    return {**os.environ, "PYTHONPATH": str(folder)}
+    return {**os.environ, "PYTHONPATH": str(folder), PLACE: str(own_folder())}  # compiled code fits the copy, too
 
 
 def run(environment: dict[str, str], *arguments: str) -> subprocess.CompletedProcess[str]:
