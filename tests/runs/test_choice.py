@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from glyphspline import code_files
+from glyphspline import code_files, hooks
 from glyphspline.fitting.options import Options
 from glyphspline.runs import choice as choices
 from glyphspline.runs.choice import Choice, Cost, costs, least
@@ -105,6 +105,6 @@ def test_code_that_is_there_is_used_and_nothing_compiled_where_it_is_off(monkeyp
 
 def test_the_costs_of_every_kind_of_work_are_known(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
-    assert costs().keys() == work().keys()
+    assert work().keys() == costs().keys() or (hooks.away() and work().keys() < costs().keys())
     for options in (Options(), Options(corners="smooth"), Options(step=9.0), Options(continuity="g2", effort="best")):
         assert 10 < least(kinds_for(options, RunSpec().formats), 2) < 1e6, "segments: a letter, and ten CJK faces"
