@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, fields, is_dataclass
-from functools import partial
 from inspect import Parameter, Signature, signature
 from math import inf
 from pathlib import Path
@@ -22,19 +21,24 @@ from .messages import UNDONE, errors, listen
 Value = TypeVar("Value")
 
 
-BARE = {"--layer": "glyphspline"}
-"""Options that may stand without a value, at the end or before another option, and the value that is meant then."""
-
-
 class Command(TyperCommand):
     """A command whose help lists options by group, without the libraries that would draw boxes around them.
 
     Attributes:
         own: of a command that has a table of its own in files of settings: an option that takes NAME=VALUE,…, and the
             dataclass whose fields these are, which are keys of the table too.
+        bare: options that may stand without a value, at the end or before another option, and the value that is meant.
     """
 
     own: ClassVar[tuple[str, type] | None] = None
+    bare: ClassVar[Mapping[str, str]] = {}
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Add the values that are meant by bare options."""
+        filled: list[str] = []
+        for arg, following in zip(args, [*args[1:], "-"], strict=False):
+            filled += [arg, self.bare[arg]] if arg in self.bare and following.startswith("-") else [arg]
+        return super().parse_args(ctx, filled)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write a section for each group."""
@@ -46,17 +50,6 @@ class Command(TyperCommand):
         for name, records in groups.items():
             with formatter.section(name):
                 formatter.write_dl(records)
-
-
-class BareOptions(Command):
-    """A command whose options may stand bare."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Add the values that are meant."""
-        filled: list[str] = []
-        for arg, following in zip(args, [*args[1:], "-"], strict=False):
-            filled += [arg, BARE[arg]] if arg in BARE and following.startswith("-") else [arg]
-        return super().parse_args(ctx, filled)
 
 
 Shown: TypeAlias = Callable[[str], bool]
@@ -123,10 +116,6 @@ def grouped(function: Callable[..., bool | None], cls: type[Command] = Command) 
     command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
     command.cls = cls  # type: ignore[attr-defined]
     return command
-
-
-bare = partial(grouped, cls=BareOptions)
-"""The same, of a function with options that may stand bare."""
 
 
 def collected(base: Value, shown: Shown, given: Mapping[str, Any]) -> Value:

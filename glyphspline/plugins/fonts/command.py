@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from ...cli import arguments as opt
 from ...cli.convert import Conversion, convert_fonts, workplace
-from ...cli.groups import bare, without
+from ...cli.groups import Command, grouped, without
 from ...cli.messages import print_json, say, stop
 from ...cli.tables import runs_facts, runs_table
 from ...fields import WRITTEN, About
@@ -21,7 +22,13 @@ if TYPE_CHECKING:
     from concurrent.futures import Executor
 
 
-@bare
+class LayerCommand(Command):
+    """A command that may write into a layer, whose name need not be said."""
+
+    bare = {"--layer": "glyphspline"}  # noqa: RUF012
+
+
+@partial(grouped, cls=LayerCommand)
 def refit(
     sources: opt.FontFiles,
     spec: Annotated[RefitSpec, without(*RefitSpec.unshown)],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,7 +11,7 @@ import typer
 
 from ...cli import arguments as opt
 from ...cli.convert import chosen
-from ...cli.groups import bare, only
+from ...cli.groups import grouped, only
 from ...cli.messages import print_json, progress, put, say, stop
 from ...cli.tables import plain
 from ...errors import OptionError
@@ -20,6 +21,7 @@ from ...outlines.flaws.kinds import MENDED, MENDED_UNASKED
 from ...types import counted, rounded_up, shortened
 from ..checks.command import thresholds_of
 from ..checks.options import FOUND, ReportOptions
+from ..fonts.command import LayerCommand
 from ..fonts.spec import RefitSpec
 
 if TYPE_CHECKING:
@@ -33,7 +35,7 @@ LEFT = 5
 """Findings that are left and named."""
 
 
-@bare
+@partial(grouped, cls=LayerCommand)
 def mend(
     sources: Annotated[list[Path], typer.Argument(metavar="SOURCE", help=SOURCES_HELP, show_default=False)],
     subset: opt.Subset,
