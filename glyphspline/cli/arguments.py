@@ -96,12 +96,21 @@ def as_typed(text: str) -> str:
     return text.encode(errors="surrogateescape").decode(errors="surrogateescape")
 
 
+def characters_of(text: str) -> str:
+    """The characters of an option: the text itself, or after an @ that of a UTF-8 file. A single @ is a character.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    typed = as_typed(text)
+    return Path(typed[1:]).read_text(encoding="utf-8-sig") if typed[0] == "@" and len(typed) > 1 else typed
+
+
 @dataclass(frozen=True)
 class Subset:
     """The glyphs that are asked for, as in the fontTools subsetter."""
 
-    text: str | None = option(None, "Take the glyphs of these characters.", GLYPHS)
-    text_file: Path | None = option(None, "Take the glyphs of a UTF-8 file's characters.", GLYPHS)
+    text: str | None = option(None, "Take the glyphs of these characters, or of those of a UTF-8 @file.", GLYPHS)
     unicodes: str | None = option(None, "Take these code points: U+4E00-4E10,9F8D or *.", GLYPHS)
     glyphs: str | None = option(None, "Take the glyphs of these names, between commas, or *.", GLYPHS)
     gids: str | None = option(None, "Take these glyph indices: 5,10-20 or *.", GLYPHS)
@@ -119,12 +128,8 @@ class Subset:
             GlyphsplineError: none are asked for, or what is asked for is no list of glyphs.
         """
         if not self.is_given:
-            raise GlyphsplineError(
-                "no glyphs asked for: give --text, --text-file, --unicodes, --glyphs, --gids or --all"
-            )
-        text = as_typed(self.text) if self.text else None
-        if self.text_file is not None:
-            text = (text or "") + self.text_file.read_text(encoding="utf-8-sig")
+            raise GlyphsplineError("no glyphs asked for: give --text, --unicodes, --glyphs, --gids or --all")
+        text = characters_of(self.text) if self.text else None
         glyphs = as_typed(self.glyphs) if self.glyphs else None
         return source.select(
             text=text, unicodes=self.unicodes, glyphs=glyphs, gids=self.gids, all_glyphs=self.all_glyphs

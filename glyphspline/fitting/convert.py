@@ -126,7 +126,7 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
     results: dict[int, GlyphResult] = {}
     for (em, reserve), those in alike.items():
         outlines, notes = zip(*(given[k] for k in those), strict=True)
-        results |= zip(those, _convert_alike(outlines, notes, options, em, reserve), strict=True)
+        results |= zip(those, _convert_alike(outlines, notes, options.for_em(em), em, reserve), strict=True)
     return [results[k] for k in range(len(glyphs))]
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
+from math import ceil, log10
 from typing import Any, ClassVar, Literal
 
 from ..errors import OptionError
@@ -48,7 +49,8 @@ class Options:
             convergence. fallback: what footpoints do where chords are too uneven for Lemma 2 to have an interval,
             "knot" or "peak".
         max_ratio: bound on the ratio of adjacent chords.
-        precision: decimals written, 0 to 9. None is 2, of continuity "g2" 0; it is replaced by what it stands for.
+        precision: decimals written, 0 to 9. None is as many as the tolerance tells apart, of continuity "g2" none: see
+            :meth:`for_em`. Results have the number in the place of None.
         residual_tolerance: the solver's, in font units; None is half of the last decimal written.
         max_iterations: of the interpolation, for each contour.
         measure: also measure distance, length and curvature where fitting does not need them (``step``, ``count``).
@@ -104,8 +106,10 @@ class Options:
     fallback: Fallback = "peak"
     max_ratio: float = MAX_RATIO
     precision: int = option(
-        None, "Write this number of decimals, 0 to 9. Without it, 2; 0 of curves as fonts store them.", WRITTEN, "N",
-        rule=whole(0, 9),
+        None,
+        "Write this number of decimals, 0 to 9. Without it, as many as the tolerance tells apart: 1 for an em of 1000; "
+        "0 of curves as fonts store them.",
+        WRITTEN, "N", rule=whole(0, 9),
     )  # fmt: skip
     residual_tolerance: float | None = None
     max_iterations: int = Method.max_iterations
@@ -115,8 +119,6 @@ class Options:
     def __post_init__(self) -> None:
         if self.corners is None:
             object.__setattr__(self, "corners", "smooth" if self.is_fixed else "sharp")
-        if self.precision is None:
-            object.__setattr__(self, "precision", 0 if self.is_for_fonts else 2)
         Method(
             self.variant, margin=self.margin, fallback=self.fallback, residual_tolerance=self.residual_tolerance,
             max_iterations=self.max_iterations,
@@ -159,6 +161,20 @@ class Options:
     def tolerance_for(self, units_per_em: float) -> float:
         """The geometric tolerance in font units."""
         return units_per_em * self.thousandths / 1000 if self.tolerance is None else self.tolerance
+
+    def for_em(self, units_per_em: float) -> Options:
+        """The options with their number of decimals: the fewest whose rounding is within 1/20 of the tolerance.
+
+        Curves as fonts store them have none, whatever the tolerance.
+
+        Example:
+            >>> [Options().for_em(em).precision for em in (24, 1000, 2048)]
+            [3, 1, 1]
+        """
+        if self.precision is not None:
+            return self
+        decimals = ceil(1.0 - log10(self.tolerance_for(units_per_em)) - 1e-9)
+        return replace(self, precision=0 if self.is_for_fonts else min(max(decimals, 0), 9))
 
     @property
     def solver_tolerance(self) -> float:

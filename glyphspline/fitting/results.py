@@ -361,7 +361,7 @@ def as_glyphs(outlines: Sequence[Outline], options: Options | None = None) -> li
         given, ends = given.chosen(np.flatnonzero(kept).tolist()), offsets_of(kept.astype(np.int64))[ends]
     found = not_fitted(given, given)
     return [
-        GlyphResult(outline, options, ContourResults(found, first, last))
+        GlyphResult(outline, options.for_em(outline.metrics.units_per_em), ContourResults(found, first, last))
         for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
     ]
 

@@ -201,9 +201,10 @@ class RunSpec:
 
     def fitting(self, units_per_em: float) -> Options:
         """The options of the conversion: what writing a font may take of the tolerance is subtracted from it."""
-        tolerance = self.options.tolerance_for(units_per_em)
-        left = [] if self.options.is_fixed else [each.share(self.options, tolerance) for each in self.files]
-        return replace(self.options, tolerance=min(left)) if left else self.options
+        options = self.options.for_em(units_per_em)
+        tolerance = options.tolerance_for(units_per_em)
+        left = [] if options.is_fixed else [each.share(options, tolerance) for each in self.files]
+        return replace(options, tolerance=min(left)) if left else options
 
     def facts(self) -> dict[str, Any]:
         """What ``run.json`` says of the run beside the options that all runs have."""

@@ -114,7 +114,7 @@ def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
         return []
     spec = job.spec
     arrays, offsets = end_to_end(results)
-    paths = curves_data(arrays.curves, spec.options.precision, offsets)
+    paths = curves_data(arrays.curves, results[0].options.precision, offsets)
     nothing = [None] * len(results)
     if not spec.is_fitted:
         return list(map(Glyph, results, paths, paths, nothing, nothing))

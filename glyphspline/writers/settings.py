@@ -58,6 +58,7 @@ class Appearance:
         stroke: colour of a line along the outline, likewise.
         em: instead of ``size``, the length of an em with its unit, which is the size that type has.
         stroke_width: of that line: font units, "0.01em", or "0.1mm" of a drawing with a size; None: 1/1000 em.
+        bare: write a path in an SVG and nothing else, black unless a colour is asked for.
 
     Raises:
         OptionError: one of these is none of what it can be, both sizes are given, or a width without a line.
@@ -71,6 +72,7 @@ class Appearance:
     stroke_width: str | None = option(
         None, "Set the width of that line: font units, 0.01em, or 0.1mm of a drawing with a size.", LOOK, "LENGTH"
     )  # fmt: skip
+    bare: bool = option(False, "Write a path in an svg, for the web, and nothing else.", LOOK)
 
     def __post_init__(self) -> None:
         check(self)
@@ -159,8 +161,8 @@ class Settings:
         look: of drawings. scale: length of a font unit in the drawing, in ``unit``.
         unit: "mm", "cm", "in", "pt", "pc" or "px"; None: a font unit.
         flatness: largest distance of a polyline from its curve, in font units; None: 1/2000 em.
-        dxf: contours as one spline each, as arcs and lines, or flattened. title: of SVG drawings; None: the glyph's
-            name and code points.
+        dxf: contours as one spline each, as arcs and lines, or flattened. title: what SVG drawings are labelled; None:
+            the glyph's name and code points.
 
     Raises:
         OptionError: a scale or flatness that is not positive, or an unknown kind of DXF.

@@ -160,7 +160,7 @@ def test_quiet_says_nothing(tmp_path: Path) -> None:
         ([FONT, "--all", "--location", "Bold"], "no named instance"),
         ([str(ROOT / "LICENSE"), "--all"], "not a TTF"),
         (["missing.ttf", "--all"], "missing.ttf"),
-        ([FONT, "--text-file", "missing.txt"], "missing.txt"),
+        ([FONT, "--text", "@missing.txt"], "missing.txt"),
         ([FONT, "--all", "--variant", "7"], "variant"),
         ([FONT, "--all", "--preset", "type", "--step", "9"], "give a tolerance"),
     ],

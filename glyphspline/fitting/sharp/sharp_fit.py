@@ -151,7 +151,7 @@ def fit_sharp(
         mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline.
     """
     settings = EFFORTS[options.effort](
-        near=max(SHARE * tolerance - 10.0**-options.precision, tolerance / 4),
+        near=SHARE * tolerance,
         angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=True, margin=float(options.margin),
         residual=options.solver_tolerance,
     )  # fmt: skip

@@ -165,7 +165,7 @@ def command(spec: DatasetSpec) -> str:
     fit = found.pop("options", []) if spec.options else ["--no-fit"]
     # ``dataset.json`` has them all.
     if not (len(spec.characters) <= 100 and spec.characters.isprintable() and "`" not in spec.characters):
-        found["characters"] = ["--text-file", "CHARACTERS.txt"]
+        found["characters"] = ["--text", "@CHARACTERS.txt"]
     return f"glyphspline dataset FONTS… --out DIR {shlex.join([*chain(*found.values()), *fit])}".rstrip()
 
 

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Annotated, Any
 
 from ...cli import arguments as opt
 from ...cli.groups import grouped, only, place
 from ...cli.messages import print_json, progress, say
-from ...errors import OptionError
 from ...fields import About
-from .spec import ROWS, TAKEN, DatasetSpec
+from .spec import ROWS, DatasetSpec
 
 
 def place_or_url(text: Any) -> str:
@@ -29,7 +27,6 @@ def dataset(
     spec: DatasetSpec,
     run: Annotated[opt.RunOptions, only("jobs", "resume", "config", "quiet", "as_json")],
     fit: Annotated[bool, About("Fit splines and measure them.", ROWS, flags=("--fit/--no-fit",))] = True,
-    text_file: Annotated[Path | None, About("Take only glyphs of a UTF-8 file's characters.", TAKEN)] = None,
 ) -> bool:
     """Make a data set of the glyphs of fonts: Parquet files that datasets, pandas, DuckDB and Arrow open.
 
@@ -37,12 +34,10 @@ def dataset(
     """
     from .run import dataset as make
 
-    spec = replace(spec, characters=opt.as_typed(spec.characters), options=spec.options if fit else None)
-    if text_file is not None:
-        if spec.characters:
-            raise OptionError("give --text or --text-file, not both")
-        text = text_file.read_text(encoding="utf-8-sig")
-        spec = replace(spec, characters="".join(sorted(set(text) - set("\r\n"))))
+    characters = opt.characters_of(spec.characters) if spec.characters else ""
+    if characters != opt.as_typed(spec.characters):  # a file's
+        characters = "".join(sorted(set(characters) - set("\r\n")))
+    spec = replace(spec, characters=characters, options=spec.options if fit else None)
     with progress(run.quiet) as observer:
         jobs = None if run.scheduler else run.processes
         summary = make(fonts, out, spec, jobs=jobs, scheduler=run.scheduler, restart=not run.resume, observer=observer)

@@ -1,8 +1,8 @@
 """Points of a fixed number at equal arc lengths of contours, with tangents and curvature, compiled.
 
 Arc length is integrated, not summed along chords: each segment is cut in halves until Gauss and Legendre's rule of
-eight nodes over a part agrees with that over its two halves to ``EXACT`` of the segment's control polygon. A place is
-found by Newton's method in the part that holds it.
+eight nodes over a part agrees with that over its two halves to ``EXACT`` of the segment's control polygon, twice in turn:
+once they may agree by chance. A place is found by Newton's method in the part that holds it.
 """
 
 from __future__ import annotations
@@ -137,17 +137,18 @@ def _lengths(cubics: FloatArray) -> tuple[FloatArray, FloatArray, IntArray]:
     table, places, firsts = [0.0], [], np.zeros(len(cubics) + 1, dtype=np.int64)
     for s in range(len(cubics)):
         scale = control_length(cubics[s : s + 1])
-        todo = [(0.0, 1.0, _length(cubics, s, 0.0, 1.0), 0)]
+        todo = [(0.0, 1.0, _length(cubics, s, 0.0, 1.0), 0, False)]
         while len(todo) > 0:
-            a, b, whole, depth = todo.pop()
+            a, b, whole, depth, agreed = todo.pop()
             middle = 0.5 * (a + b)
             one, two = _length(cubics, s, a, middle), _length(cubics, s, middle, b)
-            if abs(one + two - whole) > EXACT * scale and depth < DEPTH:
-                todo.append((middle, b, two, depth + 1))
-                todo.append((a, middle, one, depth + 1))
-            else:
+            agrees = abs(one + two - whole) <= EXACT * scale
+            if (agrees and agreed) or depth == DEPTH:
                 table.append(table[-1] + (one + two))
                 places.append(a)
+            else:
+                todo.append((middle, b, two, depth + 1, agrees))
+                todo.append((a, middle, one, depth + 1, agrees))
         firsts[s + 1] = len(places)
     return np.array(table), np.array(places), firsts
 

@@ -48,7 +48,9 @@ class DatasetSpec:
     normalise: Normalise = option("em", "Write coordinates in em, or in font units.", ROWS)
     options: Options | None = Options()
     raster: int | None = option(None, "Add a grey picture of N by N pixels.", ROWS, "N", rule=whole(8, MOST_POINTS))
-    characters: str = option("", "Take only glyphs of these characters.", TAKEN, flags="--text --characters")
+    characters: str = option(
+        "", "Take only glyphs of these characters, or of those of a UTF-8 @file.", TAKEN, flags="--text --characters"
+    )
     scripts: tuple[str, ...] = option(
         (), "Take only glyphs of these scripts, by ISO 15924: Latn,Grek.", TAKEN, "CODE,…", flags="--script"
     )

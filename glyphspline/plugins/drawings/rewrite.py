@@ -1,8 +1,9 @@
 """The paths of an SVG drawing with the fewest segments: their ``d`` is written anew, and no other byte of the file.
 
-Each path is fitted in its own units, which its transforms scale, on a grid as fine as the tolerance there. What a fit
-does not serve keeps its ``d``: paths whose fit is not within the tolerance, or has no fewer segments; paths with open
-subpaths, markers, dashes or children; and what is drawn in an unknown size: paths of clips, masks and the like.
+Each path is fitted in its own units, which its transforms scale, on a grid as fine as the tolerance there. A path whose
+fit is not within the tolerance, has no fewer segments, or is longer text stays the same curve, in the shortest form. What
+a fit does not serve keeps its ``d``: paths with open subpaths, markers, dashes or children; and what is drawn in an
+unknown size: paths of clips, masks and the like.
 """
 
 from __future__ import annotations
@@ -83,7 +84,7 @@ def rewritten(data: bytes, options: Options) -> Rewritten:
         except Exception as error:  # broken data raises anything
             unread.append(error.message if isinstance(error, GlyphsplineError) else reason(error))
             continue
-        new = None if outline is None else fitted(outline, old, path, options)
+        new = None if outline is None else shortest(outline, old, path, options)
         before, after = before + old, after + (new[0] if new else old)
         if new:
             edits.append((*places[path.element], new[1]))
@@ -121,6 +122,26 @@ def outline_of(path: Path) -> tuple[int, Outline | None]:
         return segments, None
     outline = Outline("path", contours=pen.contours, metrics=FontMetrics(em, em, 0.0), snapped=pen.snapped)
     return segments, outline
+
+
+def shortest(outline: Outline, old: int, path: Path, options: Options) -> tuple[int, str] | None:
+    """The number of segments and the path data of a fit, or of the path as it is in fewer characters; else None."""
+    fit, same = fitted(outline, old, path, options), unchanged(outline, old)
+    before = len(path.element.get("d"))
+    least = min(before, len(same[1]) if same else before)
+    if fit and len(fit[1]) <= least:
+        return fit
+    return same if same and least < before else None
+
+
+def unchanged(outline: Outline, old: int) -> tuple[int, str] | None:
+    """The path as it is, in the shortest form; None if it has arcs, or more decimals than 9."""
+    from ...writers.svg.path_data import curves_data
+
+    for precision in range(10):
+        if np.array_equal(np.round(outline.arrays.points, precision), outline.arrays.points):
+            return old, curves_data(outline.arrays, precision)[0].text
+    return None
 
 
 def fitted(outline: Outline, old: int, path: Path, options: Options) -> tuple[int, str] | None:

@@ -159,7 +159,7 @@ def back_to_source(source: Source, new: Any, spec: Any, copy: Path | None = None
     own: Any = source
     layer = None if copy else spec.layer
     with writing(copy or source.path):
-        found = write_back(own, new, spec.options.precision, copy=copy, layer=layer)
+        found = write_back(own, new, spec.options.for_em(source.metrics.units_per_em).precision, copy=copy, layer=layer)
     where = copy.name if copy else f"layer {layer} of {source.path.name}" if layer else source.path.name
     curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
     curves += "" if isinstance(source, OpenedUfo) else ", in all masters"

@@ -204,7 +204,7 @@ def convert_font_masters(
     run = describe(first, spec, glyphs, None, sources[1:], axis)
     with progress_of(out, spec, run, restart) as progress:
         write_run(out, run)
-        options = spec.options
+        options = spec.options.for_em(first.metrics.units_per_em)
         if "ttf" in spec.formats and not in_quadratics(spec):
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         job = MastersJob(out.absolute(), spec, places=tuple(map(place_of, sources)), axis=axis, options=options)

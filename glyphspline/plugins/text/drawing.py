@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from hashlib import sha256
 from itertools import groupby
 
 import numpy as np
 
+from ...errors import OptionError
 from ...fitting.results import GlyphResult, end_to_end
 from ...writers.settings import PLAIN, Appearance
-from ...writers.svg.document import head, id_prefix, number, painting, shown_as, shown_box, text
+from ...writers.svg.document import head, number, painting, shown_as, shown_box, text
 from ...writers.svg.path_data import curves_data
 from .placed import Layout
 
@@ -17,23 +19,24 @@ from .placed import Layout
 def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearance = PLAIN) -> bytes:
     """The text in UTF-8: each distinct glyph is a path, drawn once for each place by a ``<use>`` of its own.
 
-    Ids are stable: ``font-0-g36-A`` is the path of a glyph of the first font, ``line-0`` a line, ``glyph-7`` the eighth
-    glyph in visual order. ``data-cluster`` is the number of the character of the text that a glyph stands for.
+    Lines and glyphs are of the classes "line" and "glyph", in visual order. ``data-cluster`` is the number of the
+    character of the text that a glyph stands for. Ids end with a digest of the drawing: texts stand in one page.
 
     Args:
         layout: n placed glyphs. results: of its distinct glyphs.
         look: of the drawing; its em box is the box of the lines.
+
+    Raises:
+        OptionError: a bare drawing is asked for.
     """
+    if look.bare:
+        raise OptionError("bare: such a drawing is one path, and here each glyph is an element of its own")
     precision = results[0].options.precision if results else 2
     em = layout.fonts[0].metrics.units_per_em
     arrays, offsets = end_to_end(results)
     paths = curves_data(arrays.curves, precision, offsets)
-    fonts = np.zeros(len(results), dtype=np.int64)
-    fonts[layout.which] = layout.font
-    ids = [
-        f"font-{font}-{id_prefix(result.outline.name, result.outline.gid)}"
-        for font, result in zip(fonts.tolist(), results, strict=True)
-    ]
+    digest = sha256(repr((layout.text, layout.origin.tolist(), [path.text for path in paths])).encode()).hexdigest()[:8]
+    ids = [f"g{k}-{digest}" for k in range(len(results))]
     names = [
         f' data-glyph="{text(result.outline.name)}" href="#{own}' for own, result in zip(ids, results, strict=True)
     ]
@@ -41,20 +44,20 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     box = shown_box(layout.box, ink, look.view_box)
     value, shape = shown_as(box, look, em, precision)
     units = f' data-units-per-em="{number(em, precision)}"'
-    parts = [head(value, "text-title", text(layout.text), units, shape), "<defs>\n"]
+    parts = [head(value, text(layout.text), units, shape), "<defs>\n"]
     for name, path in zip(ids, paths, strict=True):
         if path.text:
             parts.append(f'<path id="{name}" d="{path.text}"/>\n')
-    parts.append(f"</defs>\n<g {painting(look, em, float(value.split()[3]))}>\n")
+    parts.append(f"</defs>\n<g{painting(look, em, float(value.split()[3]))}>\n")
     places = zip(
-        range(len(layout)), layout.line.tolist(), layout.which.tolist(), layout.cluster.tolist(),
+        layout.line.tolist(), layout.which.tolist(), layout.cluster.tolist(),
         layout.origin.tolist(), np.degrees(layout.angle).tolist(), strict=True,
     )  # fmt: skip
-    for line, own in groupby(places, key=lambda place: place[1]):
-        parts.append(f'<g id="line-{line}">\n')
+    for _, own in groupby(places, key=lambda place: place[0]):
+        parts.append('<g class="line">\n')
         parts += [
-            f'<use id="glyph-{k}" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
-            for k, _, glyph, cluster, (x, y), angle in own
+            f'<use class="glyph" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
+            for _, glyph, cluster, (x, y), angle in own
             if paths[glyph].text
         ]
         parts.append("</g>\n")

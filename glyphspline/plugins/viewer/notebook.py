@@ -109,7 +109,7 @@ def curve_svg(curve: Spline | Interpolation) -> str:
         dots = dots_data(points, digits)
         layers.append(f'<path class="{name}" stroke="{colour}" stroke-width="{number(share * extent, 9)}" d="{dots}"/>')
     title = f"Spline of degree {spline.degree}, {len(control)} control points"
-    return _sized(head(box, "spline-title", title, pen) + "".join(layers) + "</svg>")
+    return _sized(head(box, title, pen) + "".join(layers) + "</svg>")
 
 
 def interpolation_html(found: Interpolation) -> str:

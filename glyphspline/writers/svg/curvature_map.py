@@ -23,7 +23,7 @@ from .comb import (
     shown_by,
     sides_and_corners,
 )  # fmt: skip
-from .document import data_attributes, em_box, head, id_prefix, number, title, union, view_box_value
+from .document import data_attributes, em_box, head, label, number, union, view_box_value
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
 WIDEST, STEP = 1.5, 0.02
@@ -107,7 +107,7 @@ def write_map(
     kind = "outline" if whose == "result" else "source"
     layers.append(
         f'<path class="{kind}" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
-        f' fill-opacity=".07" fill-rule="nonzero" d="{path.text}"/>\n'
+        f' fill-opacity=".07" d="{path.text}"/>\n'
     )
     if control_polygon and whose == "result":
         polygons = polylines_data(arrays.controls, precision)[0]
@@ -136,13 +136,13 @@ def write_map(
         f"{''.join(said)}</g></g>\n</svg>\n"
     )
     box = (box[0] - margin, base - height - margin, max(box[2], left + width) + margin, box[3] + margin)
-    prefix, drawn = id_prefix(outline.name, outline.gid), "" if whose == "result" else ", source"
+    drawn = "" if whose == "result" else ", source"
     attributes = (
         f'{data_attributes(outline, precision)} data-scale="{scale:.6g}" fill="none" stroke-linecap="round"'
         ' stroke-linejoin="round"'
     )
-    name, named = f"{prefix}-map-title", f"Curvature of {title(outline, settings.title)}{drawn}"
-    return "".join([head(view_box_value(box, precision), name, named, attributes), *layers]).encode()
+    named = f"Curvature of {label(outline, settings.title)}{drawn}"
+    return "".join([head(view_box_value(box, precision), named, attributes), *layers]).encode()
 
 
 def _comb(

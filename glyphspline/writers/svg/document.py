@@ -19,7 +19,7 @@ from ..settings import CURRENT, VIEW_BOXES, Appearance, Settings, ViewBox
 from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-_NOT_ID = re.compile(r"[^A-Za-z0-9_-]")
+XMLNS = 'xmlns="http://www.w3.org/2000/svg"'
 
 
 class PolygonData(NamedTuple):
@@ -38,6 +38,7 @@ def to_svg(
     stroke: str = "none",
     em: str | None = None,
     stroke_width: str | None = None,
+    bare: bool = False,
 ) -> str:
     """The interpolated glyph as an SVG document.
 
@@ -56,6 +57,7 @@ def to_svg(
         stroke: colour of a line along the outline, likewise.
         em: instead of ``size``, the length of an em with its unit: the size that type has, as in "12pt".
         stroke_width: of that line: font units, "0.01em", or "0.1mm" of a drawing with a size; None: 1/1000 em.
+        bare: a path in an ``svg`` and nothing else, for the web: no label, no metrics, black unless a colour is given.
 
     Raises:
         OptionError: a view box, a size or a colour that is none of these.
@@ -66,7 +68,7 @@ def to_svg(
         >>> to_svg(glyph, view_box="ink").startswith('<svg xmlns="http://www.w3.org/2000/svg" viewBox="')
         True
     """
-    look = Appearance(view_box, size, fill, stroke, em, stroke_width)
+    look = Appearance(view_box, size, fill, stroke, em, stroke_width, bare)
     return write_svg(glyph, Settings(look)).decode()
 
 
@@ -76,12 +78,12 @@ def write_svg(result: GlyphResult, settings: Settings, path: PathData | None = N
     path = path or curves_data(result.arrays.curves, precision)[0]
     em = outline.metrics.units_per_em
     box = shown_box(em_box(outline), path.box, look.view_box)
-    prefix = id_prefix(outline.name, outline.gid)
     value, shape = shown_as(box, look, em, precision)
-    name = title(outline, settings.title)
-    begin = head(value, f"{prefix}-title", name, data_attributes(outline, precision), shape)
     paint = painting(look, em, float(value.split()[3]))
-    return f'{begin}<path id="{prefix}-outline" {paint} d="{path.text}"/>\n</svg>\n'.encode()
+    if look.bare:
+        return f'<svg {XMLNS} viewBox="{value}"{shape}><path{paint} d="{path.text}"/></svg>'.encode()
+    begin = head(value, label(outline, settings.title), data_attributes(outline, precision), shape)
+    return f'{begin}<path{paint} d="{path.text}"/>\n</svg>\n'.encode()
 
 
 def write_source(result: GlyphResult, settings: Settings, path: PathData | None = None) -> bytes:
@@ -102,10 +104,10 @@ def shown_as(box: Box, look: Appearance, em: float, precision: int) -> tuple[str
 
 
 def painting(look: Appearance, em: float, height: float) -> str:
-    """How outlines are filled and stroked, as attributes; ``height`` of the drawing in font units."""
+    """How outlines are filled and stroked, as attributes, after spaces; ``height`` of the drawing in font units."""
     line = number(look.line(em, height), 3)
     stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
-    return f'fill="{text(look.fill)}"{stroke} fill-rule="nonzero"'
+    return stroke if look.bare and look.fill == CURRENT else f' fill="{text(look.fill)}"{stroke}'
 
 
 def em_box(outline: Outline) -> Box:
@@ -123,8 +125,8 @@ def shown_box(box: Box, ink: Box | None, choice: ViewBox) -> Box:
     return ink or (0.0, 0.0, 0.0, 0.0)
 
 
-def title(outline: Outline, words: str | None = None) -> str:
-    """The accessible title of a drawing, escaped: these words, or the glyph's name and code points."""
+def label(outline: Outline, words: str | None = None) -> str:
+    """What assistive technology says of a drawing, escaped: these words, or the glyph's name and code points."""
     return text(f"{outline.name} {code_points(outline)}".strip() if words is None else words)
 
 
@@ -147,44 +149,38 @@ def polygon_data(glyphs: Sequence[GlyphResult]) -> list[PolygonData]:
 def polygon_document(glyph: GlyphResult, source: PathData | None = None, data: PolygonData | None = None) -> bytes:
     """The source outline, and over it the polygon with its vertices, as groups of one SVG document in UTF-8.
 
-    Their ids are ``g<gid>-<name>-source`` and ``…-polygon``. As an image with the fragment of the first, as in
-    ``a.svg#g36-A-source``, the drawing has no polygon. A third group, ``…-control``, holds the control
-    polygons of the result; it is not displayed. ``source`` and ``data`` are the path data, if they are known.
+    Their classes are "source" and "polygon". A third group, "control", holds the control polygons of the result; it is
+    not displayed. ``source`` and ``data`` are the path data, if they are known.
     """
     source, data = source or source_data([glyph])[0], data or polygon_data([glyph])[0]
     outline, precision = glyph.outline, glyph.options.precision
     em = outline.metrics.units_per_em
     box = union(em_box(outline), source.box)
-    prefix = id_prefix(outline.name, outline.gid)
     begin = head(
-        view_box_value(box, precision), f"{prefix}-source-title", f"Source outline and polygon of {title(outline)}",
+        view_box_value(box, precision), f"Source outline and polygon of {label(outline)}",
         data_attributes(outline, precision), ' overflow="visible"',
     )  # fmt: skip
     dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
     drawn = (
-        f"{begin}<style>#{prefix}-source:target~#{prefix}-polygon{{display:none}}</style>\n"
-        f'<g id="{prefix}-source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
-        f' stroke-width="{number(em / 500, 3)}"><path fill-rule="nonzero" d="{source.text}"/></g>\n'
-        f'<g id="{prefix}-polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
+        f'{begin}<g class="source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
+        f' stroke-width="{number(em / 500, 3)}"><path d="{source.text}"/></g>\n'
+        f'<g class="polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
         f' stroke-linecap="round" stroke-linejoin="round"><path d="{data.polygon.text}"/>'
         f'<path stroke-width="{number(em / 100, 3)}" d="{dots}"/></g>\n'
-        f'<g id="{prefix}-control" display="none" fill="none" stroke="#75c"'
+        f'<g class="control" display="none" fill="none" stroke="#75c"'
         f' stroke-width="{number(em / 600, 3)}"><path d="{data.control.text}"/></g>\n</svg>\n'
     )
     return drawn.encode()
 
 
-def head(box: str, name: str, title: str, attributes: str = "", shape: str = "") -> str:
-    """The beginning of a document.
+def head(box: str, label: str, attributes: str = "", shape: str = "") -> str:
+    """The beginning of a document, with a label and no title, which browsers show as a tooltip.
 
     Args:
-        box: value of its ``viewBox``. name: id of its title. title: escaped.
+        box: value of its ``viewBox``. label: escaped.
         attributes, shape: further attributes, each after a space; those of its size come first.
     """
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}"{shape} role="img" aria-labelledby="{name}"'
-        f'{attributes}>\n<title id="{name}">{title}</title>\n'
-    )
+    return f'<svg {XMLNS} viewBox="{box}"{shape} role="img" aria-label="{label}"{attributes}>\n'
 
 
 @lru_cache(maxsize=4096)
@@ -196,11 +192,6 @@ def number(value: float, precision: int) -> str:
 def text(value: str) -> str:
     """Text for element content or a quoted attribute; characters that XML forbids become U+FFFD."""
     return escape(_NOT_XML.sub("\ufffd", value))
-
-
-def id_prefix(name: str, gid: int) -> str:
-    """Prefix of the ids of a glyph's drawing, which are unique in a document of several drawings."""
-    return f"g{gid}-{_NOT_ID.sub('_', name)}"
 
 
 def code_points(outline: Outline) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...curves.comb import CURVATURE, NX, NY, X, Y, control_length, sampled
 from ...curves.curvature import ANGLE
 from ...outlines.contour_arrays import ContourArrays
@@ -19,10 +19,15 @@ from .comb import LONGEST, MOST_TEETH, NEAR, SIDES, SPACING, TOOTH
 
 Text = NDArray[np.uint8]
 
-LETTERS = tuple(b" lqcmLQCM")
-"""Commands by degree, relative and absolute."""
+LINE_BY, MOVE_BY, MOVE = 108, 109, 77  # l, m, M
 
-LINE_BY, MOVE_BY, MOVE = LETTERS[1], LETTERS[4], LETTERS[8]
+OF_DEGREE, SMOOTH = (0, 108, 113, 99), (0, 108, 116, 115)
+"""Relative commands of lines, quadratics and cubics: l, q, c; and t, s of those whose first handle mirrors the last one
+before. The absolute ones are 32 less."""
+
+ACROSS, DOWN = 104, 118  # h, v
+
+ABSOLUTE = 32
 
 LARGEST = 1e15
 """Coordinates are below this in units of the last decimal: their differences are exact as doubles and as integers."""
@@ -35,45 +40,97 @@ TIE = 1e-6
 
 
 @compiled
-def write_pair(text: Text, at: int, letter: int, x: float, y: float, precision: int) -> int:
-    """Write a command, or 0 to go on with the one before, and a pair of numbers at an index; returns the index behind.
+def write_number(text: Text, at: int, number: float, precision: int) -> int:
+    """Write a number in units of the last decimal at an index; returns the index behind.
 
-    They are separated by a space or a minus, and without zeros at the end or before the point.
+    It has no zeros at the end nor before the point. What parts it from a number before is a minus, its point after one
+    that has a point too, or a space.
     """
-    for axis in range(2):
-        value = int(-y if axis else x)
-        if letter or value >= 0:
-            text[at] = letter if letter else 32  # a space
-            at += 1
-        letter = 0
-        if value < 0:
-            text[at] = 45  # a minus
-            at += 1
-        value, decimals = abs(value), precision
-        while decimals and value % 10 == 0:
-            value //= 10
-            decimals -= 1
-        width, rest = 1, value // 10
-        while rest:
-            width += 1
-            rest //= 10
-        width = max(width, decimals)
-        k = at = at + width + (decimals > 0)
-        for digit in range(width):
-            if decimals and digit == decimals:
-                k -= 1
-                text[k] = 46  # a point
+    value, decimals = int(abs(number)), precision
+    while decimals and value % 10 == 0:
+        value //= 10
+        decimals -= 1
+    width, rest = 1, value // 10
+    while rest:
+        width += 1
+        rest //= 10
+    if number < 0.0:
+        text[at] = 45  # a minus
+        at += 1
+    elif at and (text[at - 1] < 58 and not (decimals and width <= decimals and _has_point(text, at))):
+        text[at] = 32  # a space after a digit
+        at += 1
+    width = max(width, decimals)
+    k = at = at + width + (decimals > 0)
+    for digit in range(width):
+        if decimals and digit == decimals:
             k -= 1
-            text[k] = 48 + value % 10
-            value //= 10
-        if decimals and width == decimals:
-            text[k - 1] = 46
+            text[k] = 46  # a point
+        k -= 1
+        text[k] = 48 + value % 10
+        value //= 10
+    if decimals and width == decimals:
+        text[k - 1] = 46
+    return at
+
+
+@inlined
+def _has_point(text: Text, at: int) -> bool:
+    """Whether the number that ends at an index has a point."""
+    k = at - 1
+    while k > 0 and 48 <= text[k] < 58:
+        k -= 1
+    return bool(text[k] == 46)
+
+
+@compiled
+def write_pair(text: Text, at: int, letter: int, x: float, y: float, precision: int) -> int:
+    """Write a command, or 0 to go on with the one before, and a pair of numbers; y has its sign turned."""
+    if letter:
+        text[at] = letter
+        at += 1
+    at = write_number(text, at, x, precision)
+    return write_number(text, at, 0.0 - y, precision)
+
+
+@compiled
+def write_command(
+    text: Text, at: int, before: int, letter: int, points: FloatArray, x: float, y: float, precision: int
+) -> int:
+    """Write a command with points (k, 2) seen from (x, y), without its letter if that is the letter before."""
+    if letter != before:
+        text[at] = letter
+        at += 1
+    kind = letter | ABSOLUTE
+    for k in range(len(points)):
+        if kind != DOWN:
+            at = write_number(text, at, points[k, 0] - x, precision)
+        if kind != ACROSS:
+            at = write_number(text, at, y - points[k, 1], precision)
     return at
 
 
 @compiled
+def write_shorter(
+    text: Text, at: int, before: int, letter: int, points: FloatArray, x: float, y: float, precision: int
+) -> tuple[int, int]:
+    """Write a relative command, or the absolute one if that is shorter; the index behind it, and its letter."""
+    behind = write_command(text, at, before, letter - ABSOLUTE, points, 0.0, 0.0, precision)
+    size, kept = behind - at, text[at:behind].copy()
+    behind = write_command(text, at, before, letter, points, x, y, precision)
+    if size >= behind - at:
+        return behind, letter
+    for k in range(size):
+        text[at + k] = kept[k]
+    return at + size, letter - ABSOLUTE
+
+
+@compiled
 def curves_text(curves: ContourArrays, closed: BoolArray, glyphs: IntArray, precision: int) -> tuple[Text, IntArray]:
-    """Path data of the contours, or polylines, of many glyphs.
+    """Path data of the contours, or polylines, of many glyphs, in the shortest of the forms that a segment has.
+
+    Decimals are binary fractions to a reader, whose sums are not exact. So with decimals each contour begins, and its
+    last curve ends, with absolute coordinates, which are the same.
 
     Args:
         curves: of all glyphs, rounded; an open polyline has a point for each of its ``degrees``.
@@ -84,28 +141,44 @@ def curves_text(curves: ContourArrays, closed: BoolArray, glyphs: IntArray, prec
     """
     whole, degrees, offsets, starts = curves
     text = np.empty((len(whole) + len(offsets)) * (WIDEST + 2 * precision), dtype=np.uint8)
-    ends, at = np.zeros(len(glyphs), dtype=np.int64), 0
+    ends, at, own = np.zeros(len(glyphs), dtype=np.int64), 0, np.zeros((3, 2))
     for g in range(len(glyphs) - 1):
-        fits = True
+        fits, x, y = True, 0.0, 0.0
         for i in range(starts[glyphs[g]], starts[glyphs[g + 1]]):
             fits &= abs(whole[i, 0]) < LARGEST and abs(whole[i, 1]) < LARGEST
         for c in range(glyphs[g], glyphs[g + 1] if fits else 0):
-            i, before, last = starts[c], 0, offsets[c + 1] - 1
+            i, last = starts[c], offsets[c + 1] - 1
+            if offsets[c] > last:
+                continue
+            if precision or c == glyphs[g]:
+                at = write_command(text, at, 0, MOVE, whole[i : i + 1], 0.0, 0.0, precision)
+            else:
+                at, _ = write_shorter(text, at, 0, MOVE_BY, whole[i : i + 1], x, y, precision)
+            x, y, bent_x, bent_y, before, letter = whole[i, 0], whole[i, 1], 0.0, 0.0, 0, 0
             for j in range(offsets[c], last + 1):
-                if j == offsets[c]:
-                    at = write_pair(text, at, MOVE, whole[i, 0], whole[i, 1], precision)
-                degree, x, y = degrees[j], whole[i, 0], whole[i, 1]
-                letter, pairs = 0 if degree == before else LETTERS[degree], degree
-                if j == last:
-                    # Z draws a last line. A last curve is absolute: it ends where the contour begins also for a reader
-                    # that adds up binary fractions.
-                    letter, x, y, pairs = LETTERS[degree + 4], 0.0, 0.0, degree if degree > 1 else 0
-                for k in range(1, pairs + 1):
-                    p = starts[c] if j == last and k == degree else i + k
-                    at = write_pair(text, at, letter, whole[p, 0] - x, whole[p, 1] - y, precision)
-                    letter = 0
-                i, before = i + degree, degree
-            if closed[c] and last >= offsets[c]:
+                degree = degrees[j]
+                if j == last and degree == 1:
+                    break  # Z draws it
+                for k in range(degree):
+                    p = starts[c] if j == last and k == degree - 1 else i + 1 + k
+                    own[k, 0], own[k, 1] = whole[p, 0], whole[p, 1]
+                if degree == 1:
+                    named = ACROSS if own[0, 1] == y else DOWN if own[0, 0] == x else OF_DEGREE[1]
+                    points = own[:1]
+                else:
+                    if before != degree:
+                        bent_x, bent_y = x, y  # after another kind of segment a smooth one has no first handle
+                    smooth = own[0, 0] - x == x - bent_x and own[0, 1] - y == y - bent_y
+                    named, points = (SMOOTH if smooth else OF_DEGREE)[degree], own[int(smooth) : degree]
+                if precision and j == last:
+                    at = write_command(text, at, letter, named - ABSOLUTE, points, 0.0, 0.0, precision)
+                else:
+                    at, letter = write_shorter(text, at, letter, named, points, x, y, precision)
+                if degree > 1:
+                    bent_x, bent_y = own[degree - 2, 0], own[degree - 2, 1]
+                i, before, x, y = i + degree, degree, own[degree - 1, 0], own[degree - 1, 1]
+            x, y = whole[starts[c], 0], whole[starts[c], 1]
+            if closed[c]:
                 text[at] = 90  # Z
                 at += 1
         ends[g + 1] = at

@@ -659,8 +659,7 @@ def test_the_command_makes_what_the_function_makes(tmp_path: Path) -> None:
         (["--points", "two"], "not a whole number"),
         (["--points", "2"], "--points is a whole number from 3"),
         (["--validation", "0.9", "--test", "0.2"], "more than all families"),
-        (["--characters", "A", "--text-file", "x"], "not both"),
-        (["--text", "A", "--text-file", "x"], "give --text or"),
+        (["--text", "@none.txt"], "none.txt"),
         (["--step", "20", "--corners", "sharp"], "corners"),
     ],
 )
@@ -683,7 +682,7 @@ def test_the_status_says_that_something_failed(tmp_path: Path) -> None:
 def test_a_command_names_only_options_that_there_are() -> None:
     assert command(DatasetSpec(options=gs.Options(max_iterations=7))) == "glyphspline dataset FONTS… --out DIR"
     assert command(DatasetSpec(options=None, characters="`")) == (
-        "glyphspline dataset FONTS… --out DIR --text-file CHARACTERS.txt --no-fit"
+        "glyphspline dataset FONTS… --out DIR --text @CHARACTERS.txt --no-fit"
     )
 
 
