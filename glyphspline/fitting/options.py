@@ -51,7 +51,7 @@ class Options:
         max_ratio: bound on the ratio of adjacent chords.
         precision: decimals written, 0 to 9. None is as many as the tolerance tells apart, of continuity "g2" none: see
             :meth:`for_em`. Results have the number in the place of None.
-        residual_tolerance: the solver's, in font units; None is half of the last decimal written.
+        residual_tolerance: the solver's, in font units; None is 1/20 of the last decimal written.
         max_iterations: of the interpolation, for each contour.
         measure: also measure distance, length and curvature where fitting does not need them (``step``, ``count``).
         remove_overlaps: unite overlapping contours before sampling.
@@ -179,4 +179,4 @@ class Options:
     @property
     def solver_tolerance(self) -> float:
         """The solver's tolerance in font units."""
-        return 0.5 * 10.0**-self.precision if self.residual_tolerance is None else self.residual_tolerance
+        return 0.05 / 10.0**self.precision if self.residual_tolerance is None else self.residual_tolerance

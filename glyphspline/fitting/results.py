@@ -314,6 +314,7 @@ class GlyphResult:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "options", self.options.for_em(self.outline.metrics.units_per_em))
         if not isinstance(self.contours, ContourResults):
             object.__setattr__(self, "contours", ContourResults(_end_to_end(self.contours)))
 
@@ -361,7 +362,7 @@ def as_glyphs(outlines: Sequence[Outline], options: Options | None = None) -> li
         given, ends = given.chosen(np.flatnonzero(kept).tolist()), offsets_of(kept.astype(np.int64))[ends]
     found = not_fitted(given, given)
     return [
-        GlyphResult(outline, options.for_em(outline.metrics.units_per_em), ContourResults(found, first, last))
+        GlyphResult(outline, options, ContourResults(found, first, last))
         for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
     ]
 

@@ -47,29 +47,33 @@
     })];
   };
 
-  const numbers = (text) => (text.match(/-?[\d.]+(?:e[-+]?\d+)?/g) || []).map(Number);
-  const pairs = (text) => {
-    const values = numbers(text);
-    return Array.from({ length: values.length >> 1 }, (_, i) => [values[2 * i], values[2 * i + 1]]);
-  };
-  const LENGTHS = { M: 1, L: 1, Q: 2, C: 3 };
+  const NUMBERS = { M: 2, L: 2, H: 1, V: 1, Q: 4, T: 2, C: 6, S: 4 }; // of a command
+  const MIRRORED = { T: 3, S: 4 }; // points of a piece whose last handle such a command mirrors
 
-  /** Path data of M and Z and of l, q, c or L, Q, C as contours, each a list of pieces [[x, y], …] of 2 to 4 points. */
+  /** Path data as contours, each a list of pieces [[x, y], …] of 2 to 4 points. */
   GS.contours = (data) => {
     const contours = [];
-    let pieces = null, start = null, at = null;
-    for (const [, command, rest] of data.matchAll(/([MLQCZlqc])([^MLQCZlqc]*)/g)) {
-      const points = pairs(rest), absolute = command.toUpperCase(), step = LENGTHS[absolute];
-      if (command === "M") {
-        at = start = points.shift();
-        contours.push((pieces = []));
+    let pieces = [], start = [0, 0], at = start;
+    for (const [, letter, rest] of data.matchAll(/([MLHVQTCSZ])([^MLHVQTCSZ]*)/gi)) {
+      const command = letter.toUpperCase();
+      if (command === "Z") {
+        if (at[0] !== start[0] || at[1] !== start[1]) pieces.push([at, start]);
+        at = start;
       }
-      for (let i = 0; i < points.length; i += step) {
-        const own = points.slice(i, i + step), [x, y] = at;
-        pieces.push([at, ...(command === absolute ? own : own.map(([dx, dy]) => [x + dx, y + dy]))]);
-        at = pieces[pieces.length - 1][step];
+      const values = (rest.match(/-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/g) || []).map(Number);
+      for (let i = 0; i < values.length; i += NUMBERS[command]) {
+        const own = values.slice(i, i + NUMBERS[command]), [x, y] = letter === command ? [0, 0] : at;
+        const points = command === "H" ? [[own[0] + x, at[1]]] : command === "V" ? [[at[0], own[0] + y]]
+          : Array.from({ length: own.length / 2 }, (_, k) => [own[2 * k] + x, own[2 * k + 1] + y]);
+        if (command === "M") {
+          start = points[0];
+          contours.push((pieces = []));
+        } else {
+          const last = pieces[pieces.length - 1], turned = last?.length === MIRRORED[command] ? last[last.length - 2] : at;
+          pieces.push([at, ...(command in MIRRORED ? [[2 * at[0] - turned[0], 2 * at[1] - turned[1]]] : []), ...points]);
+        }
+        at = points[points.length - 1];
       }
-      if (command === "Z" && (at[0] !== start[0] || at[1] !== start[1])) pieces.push([at, start]);
     }
     return contours;
   };
@@ -110,9 +114,11 @@
     return { ...drawing, source: path(source), result: path(result) };
   };
 
-  /** Dots on the points of polygons, "M x y l dx dy … Z". */
-  GS.dotted = (data, name) => GS.svg("path", { class: name, d: data.replaceAll("Z", "")
-    .replace(/(M|l?)\s*(-?[\d.]+)\s*(-?[\d.]+)/g, (_, command, x, y) => `${command === "M" ? "M" : "m"}${x} ${y}h0`) });
+  /** Dots on the points of polygons. */
+  GS.dotted = (data, name) => {
+    const points = GS.contours(data).flatMap((pieces) => [pieces[0][0], ...pieces.map((piece) => piece[piece.length - 1])]);
+    return GS.svg("path", { class: name, d: points.map(([x, y]) => `M${x} ${y}h0`).join("") });
+  };
 
   const cubic = (p) => {
     if (p.length === 4) return p;

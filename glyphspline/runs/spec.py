@@ -229,7 +229,8 @@ def describe(
     glyphs become masters on the ``axis``.
     """
     em = source.metrics.units_per_em
-    effective = {"tolerance": spec.options.tolerance_for(em), "residual_tolerance": spec.options.solver_tolerance}
+    options = spec.options.for_em(em)
+    effective = {"tolerance": options.tolerance_for(em), "residual_tolerance": options.solver_tolerance}
     asked = dict(getattr(glyphs, "asked", {}))  # the arguments of :meth:`Source.select`
     if not asked:
         asked = {"all": True} if len(glyphs) == len(source.glyph_names) else {"glyphs": list(glyphs)}
@@ -243,7 +244,7 @@ def describe(
         "selection": asked,
         "selected": len(glyphs),
         "missing": {"count": len(missing), "first": list(missing[:20])},
-        "options": spec.options.facts() | effective,
+        "options": options.facts() | effective,
         "formats": list(spec.formats),
         **asdict(spec.settings.look),
         **asdict(spec.maps),

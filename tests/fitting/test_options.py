@@ -61,7 +61,7 @@ def test_a_caption_says_what_made_a_difference(given: dict[str, Any], words: str
 
 def test_numbers_of_numpy_are_numbers() -> None:
     options = gs.Options(step=np.float64(20), precision=np.int64(1))  # type: ignore[arg-type]
-    assert options.solver_tolerance == 0.05
+    assert options.solver_tolerance == 0.005
 
 
 def test_the_solver_may_stop_sooner_than_the_digits_written() -> None:

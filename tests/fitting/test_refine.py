@@ -49,7 +49,7 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     which, near = np.zeros(1, dtype=np.int64), 0.01
     places = np.linspace(0, len(canonical.cubics), 7)[:-1]
     offsets = np.array([0, len(places)])
-    found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options())
+    found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options(precision=2))
     pieces, written = (each[:, 0] for each in beziers(found.arrays.controls, found.arrays.knots, offsets, 100.0))
     np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
@@ -85,6 +85,7 @@ def test_a_span_may_begin_in_the_segment_before_that_of_its_vertex() -> None:
 def smoothed(contours: Sequence[gs.Contour], options: gs.Options, tolerance: float) -> list[gs.ContourResult]:
     arrays = Contours(contours).arrays
     each = np.arange(len(contours) + 1)  # a glyph each
+    options = options.for_em(1000.0)
     return faithful(arrays, each, smooth_fits(options, tolerance), options, tolerance).contour_results()
 
 

@@ -37,7 +37,8 @@ def glyph(character: str) -> gs.Outline:
 
 
 def options(variant: int = 2, **others: object) -> gs.Options:
-    return gs.Options(corners="sharp", effort="best", variant=variant, **others)  # type: ignore[arg-type]
+    chosen = gs.Options(corners="sharp", effort="best", variant=variant, **others)  # type: ignore[arg-type]
+    return chosen.for_em(1024)
 
 
 def true_distance(contour: gs.ContourResult, precision: int) -> float:
@@ -56,7 +57,7 @@ def test_every_variant_is_certified_and_gives_what_the_public_interpolation_give
         assert measures.within_tolerance
         assert measures.new_crossings == 0
         assert measures.deviation_bound is not None
-        assert true_distance(contour, chosen.precision) <= measures.deviation_bound + 0.01
+        assert true_distance(contour, 1) <= measures.deviation_bound + 0.01
         for arc in contour.interpolations:
             k = len(arc.parameters) - 1
             assert not arc.spline.closed
@@ -247,7 +248,7 @@ def test_workers_compile_the_spline_fit_before_their_time_limits_begin() -> None
 
 def test_measures_are_those_of_the_curve() -> None:
     for contour in gs.convert(glyph("龍"), options()).contours:
-        form, source = shape(contour.curve.rounded(options().precision).cubics()), shape(contour.source.cubics())
+        form, source = shape(contour.curve.rounded(1).cubics()), shape(contour.source.cubics())
         m = contour.measures
         assert m.length == pytest.approx(form.length)
         assert m.area_change == pytest.approx(form.area - source.area, abs=1e-6)

@@ -56,8 +56,8 @@ def test_a_glyphs_file_has_its_drawing(tmp_path: Path) -> None:
     assert glyph["result"] == "M0 0Z"
     for kind, points in [("polygon", result.contours[0].polygon),
                          ("control", result.contours[0].interpolations[0].spline.control_points)]:  # fmt: skip
-        numbers = np.array(re.findall(r"-?[\d.]+", glyph[kind]), dtype=float).reshape(-1, 2)
-        np.testing.assert_allclose(np.cumsum(numbers, axis=0) * (1, -1), points, atol=0.051)
+        found = np.array([[segment.start.real, -segment.start.imag] for segment in parse_path(glyph[kind])])
+        np.testing.assert_allclose(found, points, atol=0.051)
     assert glyph["files"] == {"svg": files["svg"]}
     assert glyph["contours"] == [{"vertices": 12}]
 

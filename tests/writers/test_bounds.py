@@ -130,7 +130,7 @@ def test_a_lens_that_stays_is_the_sources_to_the_last_digit(width: float) -> Non
     lens = path_contours(f"M0 0C300 {width} 600 {width} 900 0C600 {-width} 300 {-width} 0 0Z")
     segments = [np.array(piece, dtype=np.float64) / lens.unit for piece in lens.contours[0]]
     outline = gs.Outline("lens", contours=(gs.Contour.from_segments(segments),))
-    result = gs.convert(outline, gs.Options(corners="sharp", tolerance=5.0))
+    result = gs.convert(outline, gs.Options(corners="sharp", tolerance=5.0, precision=2))
     written, bound = svg_contours(gs.to_svg(result)), result.contours[0].measures.deviation_bound
     assert bound is not None
     assert bound < 1e-9

@@ -49,6 +49,9 @@ def random_glyph(n: int = 20, seed: int = 0) -> gs.GlyphResult:
     return gs.GlyphResult(bare.outline, bare.options, (contour,))
 
 
+NUMBER = r"-?(?:\d+\.?\d*|\.\d+)"
+
+
 def strokes(svg: str, group: str = "comb") -> dict[str, FloatArray]:
     """Colour to its teeth (k, 2, 2), foot and tip, y up, as they are written."""
     root = ElementTree.fromstring(svg)
@@ -57,7 +60,7 @@ def strokes(svg: str, group: str = "comb") -> dict[str, FloatArray]:
     found = {}
     for path in comb.findall(f"{SVG}path"):
         if path.attrib["stroke"].startswith("#"):
-            commands = re.findall(r"([Mml])(-?[\d.]+) ?(-?[\d.]+)", path.attrib["d"])
+            commands = re.findall(rf"([Mml])({NUMBER}) ?({NUMBER})", path.attrib["d"])
             assert "".join(command for command, _, _ in commands) == "Ml" + "ml" * (len(commands) // 2 - 1)
             moves = np.array([move for _, *move in commands], dtype=float) * (1, -1)
             found[path.attrib["stroke"]] = np.cumsum(moves, axis=0).reshape(-1, 2, 2) + shift  # all are relative

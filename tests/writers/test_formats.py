@@ -291,7 +291,7 @@ def test_source_with_a_gallery_has_no_polygon(font: gs.Font, tmp_path: Path) -> 
     convert_font(font, ["O"], tmp_path / "alone", RunSpec(options, ("source",)), jobs=0)
     drawings = [(tmp_path / which / "source" / "O.svg").read_bytes() for which in ("with", "alone")]
     assert drawings[0] == drawings[1]
-    assert b"-polygon" in (tmp_path / "with" / "polygon" / "O.svg").read_bytes()
+    assert b'class="polygon"' in (tmp_path / "with" / "polygon" / "O.svg").read_bytes()
 
 
 def test_source_looks_as_drawings_do(font: gs.Font, tmp_path: Path) -> None:

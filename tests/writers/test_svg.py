@@ -3,7 +3,7 @@ from __future__ import annotations
 import io
 import re
 import xml.etree.ElementTree as ElementTree
-from decimal import Decimal
+from dataclasses import replace
 from random import Random
 from typing import Any
 
@@ -25,6 +25,7 @@ from glyphspline.writers.settings import VIEW_BOXES, ViewBox
 from glyphspline.writers.svg.document import number, polygon_document, to_svg
 from glyphspline.writers.svg.path_data import curves_data, polyline_data
 from tests.drawings import L_SHAPE, circle, polygon_contour, result
+from tests.topology import path_contours
 
 SVG = "{http://www.w3.org/2000/svg}"
 HOSTILE = "a\"'><script>alert(1)</script>&amp;\x00\x1b\ud800]]>龍"
@@ -52,14 +53,14 @@ def test_written_path_reads_back_as_the_same_beziers() -> None:
     assert len(read) == len(curve)
     for segment, expected in zip(read, curve.segments(), strict=True):
         points = np.array([[p.real, -p.imag] for p in segment.bpoints()])
-        assert np.abs(points - expected).max() <= 0.005 + 1e-9
+        assert np.abs(points - expected).max() <= 0.05 + 1e-9
 
 
 def test_path_read_back_passes_through_every_vertex_with_the_splines_curvature() -> None:
     points = np.random.default_rng(4).uniform(0, 1000, (20, 2))
     r = gs.interpolate(points, 2, margin=0.02, fallback="peak", residual_tolerance=0.005)
     curve = gs.Contour.from_segments(list(r.spline.to_bezier()))
-    read = parse_path(path_of(to_svg(result(curve))))
+    read = parse_path(path_of(to_svg(replace(result(curve), options=gs.Options(precision=2)))))
     rounding = 0.005 * np.sqrt(2)
     for x, y in points:
         distance = min(segment.radialrange(complex(x, -y))[0][0] for segment in read)
@@ -77,7 +78,7 @@ def test_lines_stay_lines_and_quadratics_quadratics() -> None:
     mixed = gs.Contour.from_segments(
         [np.array([[0, 0], [100, 0]]), np.array([[100, 0], [200, 50], [100, 100]]), np.array([[100, 100], [0, 0]])]
     )
-    assert path_of(to_svg(result(mixed))) == "M0 0l100 0q100-50 0-100Z"
+    assert path_of(to_svg(result(mixed))) == "M0 0h100q100-50 0-100Z"
     read = parse_path(path_of(to_svg(result(mixed))))
     assert isinstance(read[-1], Line)
     assert read[-1].end == 0
@@ -98,7 +99,8 @@ def test_numbers_are_minimal(value: float, precision: int, expected: str) -> Non
     assert number(value, precision) == expected
     point = gs.Contour(np.array([[value, 1], [2, 3], [4, 5]]), np.ones(3, dtype=np.int64))
     if precision == 2:
-        assert path_of(to_svg(result(point))).startswith(f"M{expected.removeprefix('0') or '0'}-1l")
+        data = path_of(to_svg(replace(result(point), options=gs.Options(precision=2))))
+        assert data.replace("L", "l").startswith(f"M{expected.removeprefix('0') or '0'}-1l")
 
 
 @pytest.mark.parametrize(
@@ -108,7 +110,8 @@ def test_numbers_are_minimal(value: float, precision: int, expected: str) -> Non
 )  # fmt: skip
 def test_numbers_are_written_exactly(value: int, precision: int, text: str) -> None:
     points = np.array([[value, -value]]) / 10.0**precision
-    assert polyline_data(points, precision) == f"M{text}{text if value < 0 else f' {text}'}"
+    parted = "" if value < 0 or text.startswith(".") else " "
+    assert polyline_data(points, precision) == f"M{text}{parted}{text}"
 
 
 def test_numbers_of_any_size_are_written() -> None:
@@ -134,23 +137,31 @@ def test_no_negative_zero_is_written() -> None:
     assert not re.search(r"-0(?![.\d])", path_of(to_svg(result(drawn))))
 
 
-@given(st.lists(st.integers(1, 3), min_size=2, max_size=9), st.randoms(use_true_random=False))
-def test_relative_numbers_add_up_to_the_rounded_points(degrees: list[int], random: Random) -> None:
-    points = np.array([[random.uniform(-1500, 1500) for _ in range(2)] for _ in range(sum(degrees))])
-    data = path_of(to_svg(result(gs.Contour(points, np.array(degrees)))))
-    at, start, found = (Decimal(0), Decimal(0)), (Decimal(0), Decimal(0)), []
-    for command, text in re.findall(r"([MlqcLQC])([^MlqcLQCZ]*)", data):
-        values = [Decimal(number) for number in re.findall(r"-?[\d.]+", text)]
-        pairs = list(zip(values[::2], values[1::2], strict=True))
-        group = {"m": 1, "l": 1, "q": 2, "c": 3}[command.lower()]
-        for i in range(0, len(pairs), group):
-            x, y = at if command.islower() else (Decimal(0), Decimal(0))
-            found += [(x + dx, y + dy) for dx, dy in pairs[i : i + group]]
-            at = found[-1]
-        start = at if command == "M" else start
-    if degrees[-1] > 1:
-        assert found.pop() == start  # and not just nearly so
-    assert np.array(found, dtype=float) == pytest.approx(np.round(points, 2) * (1, -1), abs=1e-9)
+@given(st.lists(st.integers(1, 3), min_size=2, max_size=9), st.integers(0, 2), st.randoms(use_true_random=False))
+def test_all_forms_add_up_to_the_rounded_points(degrees: list[int], precision: int, random: Random) -> None:
+    """Few places to be at, so that lines are level, and handles mirror each other."""
+    points = np.array([[random.randint(-3, 3) / 2 for _ in range(2)] for _ in range(sum(degrees))])
+    shape = gs.Contour(points, np.array(degrees))
+    drawn = replace(result(shape, shape), options=gs.Options(precision=precision))
+    curves = [each.curve.rounded(precision) for each in drawn.contours]
+    expected = [[tuple(map(tuple, piece)) for piece in curve.segments()] for curve in curves]
+    read = path_contours(path_of(to_svg(drawn)))
+    found = [[tuple((x / read.unit, y / read.unit) for x, y in piece) for piece in pieces] for pieces in read.contours]
+    if degrees[-1] == 1:  # a last line of no length is not drawn
+        expected = [
+            [piece for k, piece in enumerate(own) if k < len(degrees) - 1 or piece[0] != piece[1]] for own in expected
+        ]
+    assert found == expected
+
+
+def test_a_segment_is_written_in_the_shortest_of_its_forms() -> None:
+    cubics = [[(0, 0), (0, 50), (50, 100), (100, 100)], [(100, 100), (150, 100), (200, 50), (200, 0)]]
+    quadratics = [[(200, 0), (200, -40), (150, -40)], [(150, -40), (100, -40), (100, -100)]]
+    shape = gs.Contour.from_segments(
+        [np.array(each, dtype=float) for each in [*cubics, *quadratics, [(100, -100), (0, 0)]]]
+    )
+    data = path_of(to_svg(replace(result(shape), options=gs.Options(precision=0))))
+    assert data == "M0 0c0-50 50-100 100-100S200-50 200 0q0 40-50 40t-50 60Z"
 
 
 def raster(path: str, box: list[float]) -> FloatArray:
@@ -244,15 +255,20 @@ def test_identity_and_metrics_can_be_recovered() -> None:
     }
 
 
-def test_ids_of_different_glyphs_do_not_meet() -> None:
-    def ids(glyph: gs.GlyphResult) -> set[str]:
-        svgs = (to_svg(glyph), polygon_document(glyph).decode())
-        found = [e.attrib["id"] for svg in svgs for e in ElementTree.fromstring(svg).iter() if "id" in e.attrib]
-        assert len(found) == len(set(found)) > 0
-        return set(found)
+def test_drawings_side_by_side_in_a_page_share_no_id_and_show_no_tooltip() -> None:
+    for svg in (to_svg(result(polygon_contour(L_SHAPE))), polygon_document(result(polygon_contour(L_SHAPE))).decode()):
+        elements = list(ElementTree.fromstring(svg).iter())
+        assert not any("id" in element.attrib or element.tag == f"{SVG}title" for element in elements)
+        assert elements[0].attrib["aria-label"].endswith("A U+0041")
 
-    shape = polygon_contour(L_SHAPE)
-    assert not ids(result(shape, name="a.b", gid=1)) & ids(result(shape, name="a_b", gid=2))
+
+def test_a_bare_drawing_is_a_path_in_an_svg() -> None:
+    shape = result(polygon_contour(L_SHAPE))
+    (path,) = ElementTree.fromstring(svg := to_svg(shape, bare=True))
+    assert [*ElementTree.fromstring(svg).attrib] == ["viewBox"]
+    assert path.attrib == {"d": path_of(to_svg(shape))}
+    painted = ElementTree.fromstring(to_svg(shape, bare=True, fill="red", size="20mm"))
+    assert (painted.attrib["height"], painted[0].attrib["fill"]) == ("20mm", "red")
 
 
 @pytest.mark.parametrize("choice", VIEW_BOXES)
@@ -264,7 +280,7 @@ def test_empty_glyph_is_a_valid_drawing(choice: ViewBox) -> None:
 
 def test_polygon_drawing_has_outline_and_polygon() -> None:
     root = ElementTree.fromstring(polygon_document(result(polygon_contour(L_SHAPE))))
-    groups = {group.attrib["id"]: group for group in root.findall(f"{SVG}g")}
-    assert list(groups) == ["g36-A-source", "g36-A-polygon", "g36-A-control"]
-    outline = parse_path(groups["g36-A-source"].findall(f"{SVG}path")[0].attrib["d"])
+    groups = {group.attrib["class"]: group for group in root.findall(f"{SVG}g")}
+    assert list(groups) == ["source", "polygon", "control"]
+    outline = parse_path(groups["source"].findall(f"{SVG}path")[0].attrib["d"])
     assert abs(outline.area()) == pytest.approx(400 * 80 + 80 * 620)

@@ -1,8 +1,8 @@
 """Points of a fixed number at equal arc lengths of contours, with tangents and curvature, compiled.
 
 Arc length is integrated, not summed along chords: each segment is cut in halves until Gauss and Legendre's rule of
-eight nodes over a part agrees with that over its two halves to ``EXACT`` of the segment's control polygon, twice in turn:
-once they may agree by chance. A place is found by Newton's method in the part that holds it.
+eight nodes over a part agrees with that over its two halves to ``EXACT`` of the segment's control polygon, twice in
+turn: once they may agree by chance. A place is found by Newton's method in the part that holds it.
 """
 
 from __future__ import annotations

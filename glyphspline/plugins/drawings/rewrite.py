@@ -1,8 +1,8 @@
 """The paths of an SVG drawing with the fewest segments: their ``d`` is written anew, and no other byte of the file.
 
-Each path is fitted in its own units, which its transforms scale, on a grid as fine as the tolerance there. A path whose
-fit is not within the tolerance, has no fewer segments, or is longer text stays the same curve, in the shortest form. What
-a fit does not serve keeps its ``d``: paths with open subpaths, markers, dashes or children; and what is drawn in an
+Each path is fitted in its own units, which its transforms scale, on a grid as fine as the tolerance there. A path stays
+the same curve, in the shortest form, if its fit is not within the tolerance, has no fewer segments, or is longer text.
+What a fit does not serve keeps its ``d``: paths with open subpaths, markers, dashes or children; what is drawn in an
 unknown size: paths of clips, masks and the like.
 """
 
