@@ -16,12 +16,15 @@ certificate holds in the whole design space. A single outline is a master with t
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from ....curves.cubics import directions, length
+from ....fitting.first_good import first_good
 from ....fitting.sharp.corners import NO_HANDLE
 from ....fitting.sharp.settings import Settings
 from ....types import BoolArray, FloatArray, IntArray
@@ -32,12 +35,34 @@ from .outlines import Given, Stored, is_ring, read_contour, set_unit
 from .refusals import distances, wrong_quads
 from .starts import begin, ended
 
-NEAR = (0.7, 0.35, 0.35, 0.0)
-"""Of the tolerance: how near a section of a source of quadratics on the grid is to be before it is rounded, on each
-try; 0 keeps it."""
 
-OTHERS, MORE = (0.7, 0.7, 0.5, 0.5, 0.7, 0.5, 0.35, 0.35, 0.35), (0, 1, 0, 1, 0, 1, 2, 4, 8)
-"""The same for other sources, which have nothing to keep; and quadratics beyond the fewest."""
+class Try(NamedTuple):
+    """What a section is to be on a try; see :data:`.grid.EXPLICIT` too.
+
+    Attributes:
+        near: of the tolerance: how near the source before it is rounded; 0 keeps what is stored.
+        more: quadratics beyond the fewest.
+    """
+
+    near: float
+    more: int = 0
+
+
+STORED_TRIES = Try(near=0.7), Try(near=0.35), Try(near=0.35), Try(near=0.0)
+"""Of a source of quadratics on the grid."""
+
+OTHER_TRIES = (
+    Try(near=0.7),
+    Try(near=0.7, more=1),
+    Try(near=0.5),
+    Try(near=0.5, more=1),
+    Try(near=0.7),
+    Try(near=0.5, more=1),
+    Try(near=0.35, more=2),
+    Try(near=0.35, more=4),
+    Try(near=0.35, more=8),
+)
+"""Of other sources, which have nothing to keep."""
 
 MOST = 4
 """Quadratics for a cubic, and twice as many for a section."""
@@ -80,7 +105,8 @@ class Sections:
     def section(self, a: int, b: int, tries: int) -> Quads:
         """The quadratics from joint a to joint b: as few as are near enough, and some more, or what is stored."""
         given, known = self.given, self.given.stored.known
-        near = (NEAR if known else OTHERS)[tries] * self.tolerance
+        share, more = (STORED_TRIES if known else OTHER_TRIES)[tries]
+        near = share * self.tolerance
         if near == 0.0:
             return self.stored(a, b, True)
         most, level = b - a - 1 if known else MOST * (b - a + 1), False
@@ -91,9 +117,9 @@ class Sections:
                 count, found, level = own_count, own, True
         if known:
             return self.stored(a, b, tries > 0) if found is None else found
-        if found is not None and MORE[tries] == 0:
+        if found is not None and more == 0:
             return found
-        count += 0 if found is None else MORE[tries]
+        count += 0 if found is None else more
         begun, q = self.begun(a, b, count, level)
         while not begun:
             count -= 1
@@ -136,7 +162,7 @@ class Sections:
 
 def next_tries(q: Quads, bad: BoolArray, stored: bool, tries: IntArray) -> bool:
     """Give sections with bad quadratics another try; whether there is one."""
-    before, last = tries.copy(), len(NEAR if stored else OTHERS) - 1
+    before, last = tries.copy(), len(STORED_TRIES if stored else OTHER_TRIES) - 1
     failed, moved = np.zeros((2, len(tries)), np.bool_)
     failed[q.owner[bad & ~q.held]], moved[q.owner[bad & q.held]] = True, True
     for f in np.flatnonzero(failed | moved).tolist():
@@ -146,48 +172,82 @@ def next_tries(q: Quads, bad: BoolArray, stored: bool, tries: IntArray) -> bool:
             tries[f] = EXPLICIT
         elif moved[f]:
             # What is implied in the source moves with the control point beyond: both stay.
-            tries[max(f - 1, 0) : f + 2] = len(NEAR) - 1
+            tries[max(f - 1, 0) : f + 2] = len(STORED_TRIES) - 1
     return not np.array_equal(tries, before)
+
+
+class Rounded(NamedTuple):
+    """Quadratics on the grid that may be the points of a run.
+
+    Attributes:
+        c, node, implied: see :class:`.fit.chains.Quads`. far: the certified distance from the source.
+        wrong: 1 where they are refused; by how much they miss or turn then; and else how many points they are.
+    """
+
+    c: FloatArray
+    node: FloatArray
+    implied: BoolArray
+    far: float
+    wrong: tuple[int, float, int]
 
 
 def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
     """Points of the quadratics from joint i to joint j, without the last: at most as many as are stored."""
-    n, K, stored, samples = j - i, len(given.cubics), given.stored, given.joints.samples
-    ring, near = is_ring(given.cuts, i, j), 0.999 * tolerance
-    own = n + 1 + np.count_nonzero(~stored.implied[i + 1 : j])
-    sections, best, count, least, reached, done = Sections(given, tolerance), None, 0, np.inf, np.inf, False
+    best = first_good(_rounded(given, i, j, tolerance), lambda each: each.wrong)
+    return (*points_of(best.c, best.node, best.implied), best.far)
+
+
+def _rounded(given: Given, i: int, j: int, tolerance: float) -> Iterator[Rounded]:
+    """What is stored of a run, and then other quadratics, cut into ever more sections, each of which has its tries."""
+    n, K, stored, nearest = j - i, len(given.cubics), given.stored, np.inf
+    own = n + 1 + int(np.count_nonzero(~stored.implied[i + 1 : j]))
+    wrong = (0, 0.0, own) if stored.known else (1, np.inf, 0)
+    yield Rounded(stored.control[:, i:j], stored.node[:, i : j + 1], stored.implied[i:j], stored.drift, wrong)
+    if stored.known and (n == 1 or stored.stays[i:j].any()):
+        return
+    sections = Sections(given, tolerance)
     # Sections end nowhere inside: extrema of all masters at one parameter are more than most have; then at extrema; and
     # where nothing is near enough, at all joints.
     for cut in range(1 if K == 1 else 0, 3):
         stops = given.upright[i : j + 1] & (cut == 1) | (cut == 2)
         stops[0] = stops[n] = True
         ends = (i + np.flatnonzero(stops)).tolist()
-        if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or reached <= tolerance)):
+        if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or nearest <= tolerance)):
             continue
-        tries = np.full(len(ends) - 1, EXPLICIT if cut == 2 else 0)
-        for _ in range(0 if stored.known and (n == 1 or stored.stays[i:j].any()) else ATTEMPTS):
-            q = sections.assembled(ends, tries)
+        for each in _of_sections(sections, ends, EXPLICIT if cut == 2 else 0):
+            if cut < 2 or each.far <= tolerance:
+                nearest = min(nearest, each.far)
+                yield each
+
+
+def _of_sections(sections: Sections, ends: list[int], first: int) -> Iterator[Rounded]:
+    """The quadratics of a run that is cut at joints: each time other tries of the sections that are wrong.
+
+    Args:
+        first: try of all.
+    """
+    given, tolerance, i, j = sections.given, sections.tolerance, ends[0], ends[-1]
+    stored, samples, tries = given.stored, given.joints.samples, np.full(len(ends) - 1, first)
+    ring, near = is_ring(given.cuts, i, j), 0.999 * tolerance
+    for _ in range(ATTEMPTS):
+        q = sections.assembled(ends, tries)
+        relax(q, samples, 0.1 * tolerance, np.inf)
+        if aim(q, tries, ring):
             relax(q, samples, 0.1 * tolerance, np.inf)
-            if aim(q, tries, ring):
-                relax(q, samples, 0.1 * tolerance, np.inf)
-            round_quads(q, samples, tolerance)
-            off = distances(q, given.joints.places, given.outline, given.corners, i, j, near)
-            bad, far, kinks = wrong_quads(
-                q, off, near, given.way, given.line, given.joints.corner, given.mixes, i, j, ring
-            )  # fmt: skip
-            if ring:
-                q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
-            again = bool(bad.any()) and next_tries(q, bad, stored.known, tries)
-            rank = kinks + (far / tolerance if far <= tolerance else 1e3 * far)
-            size = len(bad) + 1 + int(np.count_nonzero(~q.implied[1:-1]))
-            good = not bad.any() and not (done and size >= count)
-            if good or (not stored.known and rank < least and not done and (cut < 2 or far <= tolerance)):
-                least, best, reached, done, count = rank, q, far, done or good, size - int(q.implied[0])
-            if not again:
-                break
-    if best is not None and (not stored.known or count < own):
-        return (*points_of(best.c, best.node, best.implied), reached)
-    return (*points_of(stored.control[:, i:j], stored.node[:, i : j + 1], stored.implied[i:j]), stored.drift)
+        round_quads(q, samples, tolerance)
+        bounds = distances(q, given.joints.places, given.outline, given.corners, i, j, near)
+        far, beyond = max(0.0, *bounds.tolist()), ~(bounds <= near)
+        bad, kinks = wrong_quads(q, beyond, given.way, given.line, given.joints.corner, given.mixes, i, j, ring)
+        if ring:
+            q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
+        if not bad.any():
+            yield Rounded(q.c, q.node, q.implied, far, (0, 0.0, len(bad) + int(np.count_nonzero(~q.implied[:-1]))))
+            return
+        if not stored.known:  # or else what is stored is better
+            miss = far / tolerance if far <= tolerance else 1e3 * far
+            yield Rounded(q.c, q.node, q.implied, far, (1, kinks + miss, 0))
+        if not next_tries(q, bad, stored.known, tries):
+            return
 
 
 def points_of(c: FloatArray, node: FloatArray, implied: BoolArray) -> tuple[FloatArray, BoolArray]:
