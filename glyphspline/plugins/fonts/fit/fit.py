@@ -100,11 +100,11 @@ def fit_for_fonts(
         c2=False, margin=0.0, residual=0.0,
     )  # fmt: skip
     limits = Limits(settings.near, em * scale, settings.chain_rounds, corners, mixes)
-    asked = Asked(sources, settings, limits, options.precision, tolerance, em)
-    return first_good(asked.fits(), lambda fit: (int((fit.again != fit.tries).sum()),)).curves
+    wanted = FontSources(sources, settings, limits, options.precision, tolerance, em)
+    return first_good(wanted.fits(), lambda fit: (int((fit.again != fit.tries).sum()),)).curves
 
 
-class Fit(NamedTuple):
+class FontFit(NamedTuple):
     """Curves of all contours, the tries of each of the m segments that were in vain before, and those that are now."""
 
     curves: list[FontCurve]
@@ -112,7 +112,7 @@ class Fit(NamedTuple):
     again: IntArray
 
 
-class Asked(NamedTuple):
+class FontSources(NamedTuple):
     """Contours in K masters that are to be fitted for fonts.
 
     Attributes:
@@ -126,7 +126,7 @@ class Asked(NamedTuple):
     tolerance: float
     em: float
 
-    def fits(self) -> Iterator[Fit]:
+    def fits(self) -> Iterator[FontFit]:
         """Fits: of all contours, and then of those again in which segments of the last one are wrong."""
         source, expected = self.sources[0], [self.expected(master) for master in self.sources]
         tries = np.zeros(len(source.degrees), dtype=np.int64)
@@ -139,7 +139,7 @@ class Asked(NamedTuple):
             for c in which if level > KEPT + 1 else ():
                 a, b = source.offsets[c : c + 2]
                 again[a:b] = np.maximum(again[a:b], KEPT)
-            yield Fit(curves, tries, again)
+            yield FontFit(curves, tries, again)
             own = np.concatenate([np.arange(source.offsets[c], source.offsets[c + 1]) for c in which])
             chosen, last = [master.chosen(which) for master in self.sources], [curves[c].fitted for c in which]
             new = dict(zip(which, self.fitted(chosen, again[own], again[own] != tries[own], last), strict=True))

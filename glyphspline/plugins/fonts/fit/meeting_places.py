@@ -35,7 +35,7 @@ class Move(NamedTuple):
     dy: float
 
 
-class Cost(NamedTuple):
+class MoveCost(NamedTuple):
     """What moving the points of a cubic costs in distance, see :func:`.nearness.squares`."""
 
     form: FloatArray
@@ -45,7 +45,7 @@ class Cost(NamedTuple):
 
 @compiled
 def side_places(
-    run: Run, s: int, end: int, move: Move, of: Cost, far: tuple[float, float, float, bool], em: float,
+    run: Run, s: int, end: int, move: Move, of: MoveCost, far: tuple[float, float, float, bool], em: float,
     dearest: float, found: FloatArray,
 ) -> int:  # fmt: skip
     """Places of the two inner points of cubic s when the node at one end of it moves.
@@ -161,7 +161,7 @@ def meet(
     level = 0 if P[a, 2, 0] == nx and P[q, 1, 0] == nx else -1
     level = 1 if P[a, 2, 1] == ny and P[q, 1, 1] == ny else level
     one, two, least = beyond_end(run, a, 0), beyond_end(run, q, 1), np.inf
-    best, costs = np.empty((5, 2)), (Cost(forms[0], exact[0], rest[0]), Cost(forms[1], exact[1], rest[1]))
+    best, costs = np.empty((5, 2)), (MoveCost(forms[0], exact[0], rest[0]), MoveCost(forms[1], exact[1], rest[1]))
     for code in range(5 if level >= 0 else 25):
         dx, dy = NEARBY[code] if level < 0 else (0.0, STEPS[code]) if level == 0 else (STEPS[code], 0.0)
         move = Move(level, dx, dy)
