@@ -6,16 +6,32 @@ Modern) and of two brush faces, which have 10,575 segments with ``effort="fast"`
 
 from __future__ import annotations
 
-SMOOTH_TRIES = ((1.0, None), (1.0, 3), (0.25, 3))
-"""Of contours that cross or collapse, in the smooth mode: shares of the tolerance, and rounds in which vertices are
-taken out as well; None for the usual number.
+from typing import NamedTuple
+
+
+class SmoothTry(NamedTuple):
+    """A fit of the smooth mode.
+
+    Attributes:
+        share: of the tolerance. early: rounds in which vertices are taken out as well; None for the usual number.
+        holds: whether corners are held, if the options say so. fair: whether curves are faired then.
+    """
+
+    share: float
+    early: int | None = None
+    holds: bool = False
+    fair: bool = False
+
+
+SMOOTH_TRIES = SmoothTry(1.0, holds=True, fair=True), SmoothTry(1.0, early=3), SmoothTry(0.25, early=3)
+"""Of contours that cross or collapse, in the smooth mode.
 
 Strands of an outline that lie on each other are crossed the less the fewer vertices they have. Of 13,333 contours of
 eleven faces with corners passed, whose best results leave 207 changed, 71 are worse without the second try, 37 without
 the third one; with corners held, three and four. Shares of 0.5, 0.1 and 0.04 besides change nothing in 8,233 contours.
 """
 
-HELD_TRY = (1.0, None)
+HELD_TRY = SmoothTry(1.0, holds=True)
 """Where corners are held, a try after the first one that holds them too, without fairing; later ones do not.
 
 Without it four of 13,333 contours of eleven faces have more segments, and nine at a tolerance of 3/1000 em. A second

@@ -121,9 +121,8 @@ def test_a_fit_leaves_the_bound_its_share_of_rounding() -> None:
 
 def test_first_places_are_graded_at_corners_and_few_in_between() -> None:
     canonical = canonical_of(square_contour(900), circle_contour(100))
-    _, places, offsets = steps.first_places(
-        canonical, np.radians(12), 4.0, growth_of(4.0, 2), 1.0, 2, np.zeros(2, dtype=np.bool_)
-    )
+    rules = steps.Rules(near=1.0, corner_angle=np.radians(12), ratio=4.0, factor=growth_of(4.0, 2))
+    _, places, offsets = steps.first_places(canonical, rules, 2, np.zeros(2, dtype=np.bool_))
     points = steps.polygons(canonical, np.arange(2), places, offsets)
     square = points[: offsets[1]]
     h = np.hypot(*(np.roll(square, -1, axis=0) - square).T)

@@ -7,6 +7,7 @@ see :mod:`.vertex_steps`. What decides is here, in Python; what computes is comp
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import ceil, inf
 from typing import NamedTuple
@@ -14,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...types import FloatArray, IntArray
+from ..first_good import first_good
 from ..ladders import STARTS
 from .corners import Joints
 from .cubics import fit_cubic
@@ -91,8 +93,8 @@ def fit_spline(joints: Joints, piece: Pieces, near: float, settings: Settings, g
     if begun:
         points = np.ascontiguousarray(piece.vertices.swapaxes(0, 1))
         first = Vertices(points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents[0]))
-    best = search.grown(first, guess, wanted)
-    if best is None:
+    best = first_good(search.curves(first, guess, wanted), lambda curve: (int(not curve.error <= near),))
+    if not best.error <= near:
         return none
     return search.piece(piece, best if begun else search.thinned(best, least))
 
@@ -117,8 +119,9 @@ class Search:
         """What is followed."""
         return self.samples.Q, self.samples.directions, self.samples.free
 
-    def grown(self, first: Vertices | None, guess: int, wanted: int) -> Curve | None:
-        """Move vertices, and add more where they miss the tolerance, until a curve passes.
+    def curves(self, first: Vertices | None, guess: int, wanted: int) -> Iterator[Curve]:
+        """Curves whose vertices have moved, each with more vertices where the last one misses the tolerance; where that
+        leads nowhere, from a new guess on.
 
         Args:
             first: the vertices to begin with; None to begin with ``guess`` spans, and then with more.
@@ -132,8 +135,7 @@ class Search:
             slow = insertions = 0
             while vertices is not None:
                 curve = self.moved(vertices, settings.rounds)
-                if curve.error <= self.near:
-                    return curve
+                yield curve
                 slow = slow + 1 if curve.error > 4 * self.near and curve.error > 0.7 * last else 0
                 last = curve.error
                 if last == inf or slow == 3:
@@ -142,13 +144,12 @@ class Search:
                 vertices = self.with_more(curve, settings.growth if insertions <= PATIENCE else inf)
             if vertices is None:
                 last = inf
-        return None
 
     def thinned(self, best: Curve, least: int) -> Curve:
         """A curve with vertices taken out, the cheapest first, as long as what is left passes.
 
-        In a pass a share of them is tried, each once. After a pass that took any out another one follows. Where none
-        can be taken out, a new guess has one less.
+        One curve loses vertices, and is not chosen among several. In a pass a share of them is tried, each once. After
+        a pass that took any out another one follows. Where none can be taken out, a new guess has one less.
         """
         settings = self.settings
         for n in range(settings.passes):

@@ -64,21 +64,31 @@ class Sampled(NamedTuple):
     of: IntArray
 
 
+class Beside(NamedTuple):
+    """The outline that a curve of n spans stays near: where on it each span begins, how far a span's samples may be
+    from it, and the distance allowed."""
+
+    outline: FloatArray
+    ends: FloatArray
+    limits: FloatArray
+    near: float
+
+
 @compiled
 def move_controls(
-    outline: FloatArray, ends: FloatArray, intervals: FloatArray, limits: FloatArray, near: float, significant: float,
-    normals: FloatArray, moving: BoolArray, surplus: int, controls: FloatArray,
+    beside: Beside, intervals: FloatArray, significant: float, normals: FloatArray, moving: BoolArray, surplus: int,
+    controls: FloatArray,
 ) -> None:  # fmt: skip
     """Move control points of a contour in one master, until it has lost its surplus of extrema.
 
     Args:
-        ends, limits: of the n spans. significant: see :func:`..curves.fairness.extrema_of`.
+        intervals: see :func:`_basis`. significant: see :func:`..curves.fairness.extrema_of`.
         normals, moving: see :class:`Moves`. controls: (n, 2), which change.
     """
     moves = _numbered(normals, moving)
-    at = _sampled(outline, ends, intervals, limits, near, moves, controls)
+    at = _sampled(beside, intervals, moves, controls)
     total, kappa, bend, by, weight, left = len(at.jets), at.kappa, at.bend, at.by, 0.2, 0
-    found, delta = np.empty(total + 1, dtype=np.int64), np.zeros(len(limits))
+    found, delta = np.empty(total + 1, dtype=np.int64), np.zeros(len(beside.limits))
     for step in range(STEPS):
         for s in range(total):  # curvature of all samples and its derivatives by the moves
             dx, dy, ax, ay = at.jets[s, 0], at.jets[s, 1], at.jets[s, 2], at.jets[s, 3]
@@ -95,7 +105,7 @@ def move_controls(
             left = extrema - surplus
         elif extrema <= left:
             break
-        _newton(moves, at, weight, 10 * TURN * significant, near, delta)
+        _newton(moves, at, weight, 10 * TURN * significant, beside.near, delta)
         _advance(moves, at, delta, controls)
         weight *= 0.5  # of the barrier
 
@@ -132,12 +142,9 @@ def _numbered(normals: FloatArray, moving: BoolArray) -> Moves:
 
 
 @compiled
-def _sampled(
-    outline: FloatArray, ends: FloatArray, intervals: FloatArray, limits: FloatArray, near: float, moves: Moves,
-    controls: FloatArray,
-) -> Sampled:  # fmt: skip
+def _sampled(beside: Beside, intervals: FloatArray, moves: Moves, controls: FloatArray) -> Sampled:
     """Samples of the spans that move, before any move; arguments as of :func:`move_controls`."""
-    M, basis, s, count = len(moves.spans), np.empty((3, 4)), 0, 0
+    (outline, ends, limits, near), M, basis, s, count = beside, len(moves.spans), np.empty((3, 4)), 0, 0
     jets, by = np.empty((M * SAMPLES, 4)), np.empty((M * SAMPLES, 4, 4))
     rows, of, point = np.empty((M * POINTS, 7)), np.empty(M * POINTS, dtype=np.int64), np.empty((1, 1, 2))
     for m in range(M):

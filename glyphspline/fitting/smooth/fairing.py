@@ -8,6 +8,8 @@ squares; a logarithmic barrier keeps samples of the curve near the outline. Each
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...compiled import compiled
@@ -15,7 +17,7 @@ from ...curves.fairness import SHARE, TURN, curvatures, extrema_of, swings
 from ...types import BoolArray, FloatArray, IntArray
 from ..measures import CORNER, extrema_floor
 from .canonical_contours import CanonicalContours, in_master
-from .fair_steps import move_controls, on_spline
+from .fair_steps import Beside, move_controls, on_spline
 from .spacing import spans_after
 from .steps import Trial
 
@@ -28,6 +30,20 @@ TRIES = 5
 
 PEAK = 1.2
 """Largest factor by which the largest curvature may grow."""
+
+
+class Splines(NamedTuple):
+    """The curves of a trial, ragged.
+
+    Attributes:
+        controls: (n, 2 K). knots, parameters: of the splines, and of footpoints.
+        held: (n,) vertices whose control points are held.
+    """
+
+    controls: FloatArray
+    knots: FloatArray
+    parameters: FloatArray
+    held: BoolArray
 
 
 @compiled
@@ -135,19 +151,18 @@ def lowered(
 
 @compiled
 def fair(
-    contours: CanonicalContours, trial: Trial, controls: FloatArray, knots: FloatArray, parameters: FloatArray,
-    held: BoolArray, surplus: IntArray, limits: FloatArray, again: BoolArray, near: float, moved: FloatArray,
+    contours: CanonicalContours, trial: Trial, splines: Splines, surplus: IntArray, limits: FloatArray,
+    again: BoolArray, near: float, moved: FloatArray,
 ) -> None:  # fmt: skip
     """Write the new vertices of the curves of a trial; those of held control points stay.
 
     Args:
-        controls: (n, 2 K). knots, parameters: of the splines, and of footpoints. held: (n,) vertices whose control
-            points are held. surplus: (k, K) extrema beyond those that a contour has to have.
+        surplus: (k, K) extrema beyond those that a contour has to have.
         limits: (n, K) largest distance of samples of each span from the outline; 0 where nothing moves.
         again: (n, K) the spans to be faired. near: the distance allowed, in font units.
         moved: (n, 2 K), which change beside these spans.
     """
-    offsets, K = trial.offsets, limits.shape[1]
+    offsets, K, (controls, knots, parameters, held) = trial.offsets, limits.shape[1], splines
     for i in range(len(trial.which)):
         a, b = offsets[i], offsets[i + 1]
         n, own, ends = b - a, knots[a + i : b + i + 1], trial.ends[a + i : b + i + 1]
@@ -173,7 +188,8 @@ def fair(
             if moving.any():
                 # A difference of curvature is significant that turns the contour by ``TURN``.
                 significant = TURN * np.sqrt(K) / (own[n] - own[0])
-                move_controls(outline, ends, intervals, least, near, significant, normals, moving, surplus[i, v], P)
+                beside = Beside(outline, ends, least, near)
+                move_controls(beside, intervals, significant, normals, moving, surplus[i, v], P)
             for j in range(n):
                 if not held[a + j] and (moving[j] or moving[j - 1]):
                     span, x, y, _, _ = on_spline(P, own, intervals, parameters[a + j])

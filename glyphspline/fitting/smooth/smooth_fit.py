@@ -27,7 +27,7 @@ from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray, Views
 from ..closed_curves import beziers, interpolated
 from ..faithful import Fits
-from ..ladders import HELD_TRY, SMOOTH_TRIES
+from ..ladders import HELD_TRY, SMOOTH_TRIES, SmoothTry
 from ..measures import distance_columns, solved_columns
 from ..options import Options
 from ..results import ConvertedContours
@@ -54,9 +54,9 @@ def smooth_fits(options: Options, tolerance: float) -> Fits:
     tries = (SMOOTH_TRIES[0], *held, *SMOOTH_TRIES[1:])
 
     def fit(contours: ContourArrays, attempt: int) -> ConvertedContours:
-        share, early = tries[attempt]
-        search = _Search(all_cubics(contours)[None], contours.offsets, None, options, share * tolerance)
-        search.search(attempt <= len(held), early, attempt == 0)
+        chosen = tries[attempt]
+        search = _Search(all_cubics(contours)[None], contours.offsets, None, options, chosen.share * tolerance)
+        search.search(chosen)
         return search.converted(contours, tolerance)
 
     return Fits(len(tries), fit)
@@ -80,7 +80,7 @@ def fit_smooth_masters(
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
     search = _Search(cubics, offsets, mixes, options, near)
-    search.search(first, SMOOTH_TRIES[0 if first else 1][1], True)
+    search.search(SMOOTH_TRIES[0 if first else 1]._replace(fair=True))
     return [search.in_masters(k) for k in range(len(offsets) - 1)]
 
 
@@ -115,10 +115,14 @@ def _mixed(mixes: FloatArray, cubics: FloatArray) -> FloatArray:
 class _Search:
     """The search for the vertices of a glyph's contours.
 
+    It is an iteration, not a choice among proposals: each round moves, adds and removes the vertices of all contours
+    that are not done, from what was measured in the last one, in one call.
+
     Attributes:
         contours: in all masters. mixes: (V, K) weights of the masters in the instances that are measured, and
             instances: the contours in these; None for plain outlines.
-        near: the distance allowed, in font units. hold: (C,) whether control points of corners are held at them.
+        near: the distance allowed, in font units. rules: how vertices are laid.
+        hold: (C,) whether control points of corners are held at them.
         kept: by contour, a round and which part of it: that with the fewest vertices that passed; if none did, that
             with the smallest bound.
     """
@@ -132,24 +136,20 @@ class _Search:
             every = self.contours.cubics.reshape(-1, len(cubics), 4, 2)
             self.instances = self.contours._replace(cubics=_mixed(mixes, every).reshape(-1, 4, 2))
         self.hold = np.zeros(len(self.contours.flipped), dtype=np.bool_)
-        self.angle = float(np.radians(options.corner_angle))
+        growth = growth_of(options.max_ratio, options.variant)
+        self.rules = steps.Rules(near, float(np.radians(options.corner_angle)), options.max_ratio, growth)
         self.kept: dict[int, tuple[Round, int]] = {}
 
-    def search(self, first: bool, early: int | None, fair: bool) -> None:
-        """Search for the curves of all contours.
-
-        Args:
-            first: whether this is their first fit: corners are held in it, if the options say so.
-            early: rounds that also remove vertices; None for the usual number. fair: whether to fair the curves.
-        """
-        self.hold[:] = first and self.options.hold_corners
+    def search(self, chosen: SmoothTry) -> None:
+        """Search for the curves of all contours."""
+        early, self.hold[:] = chosen.early, chosen.holds and self.options.hold_corners
         # One round also removes vertices that seem unnecessary. Those beside held corners do not grow fewer by it.
         self.refine(int(not self.hold.any()) if early is None else early)
         if missed := [k for k, found in self.kept.items() if self.hold[k] and not self.passes(found)]:
             self.hold[missed] = False
             self.refine(1 if early is None else early, missed)
         self.thin()
-        if self.options.hold_corners and fair:
+        if self.options.hold_corners and chosen.fair:
             self.fair()
 
     def refine(self, early: int, again: Sequence[int] = ()) -> None:
@@ -158,24 +158,21 @@ class _Search:
         Args:
             early: rounds that also remove vertices. again: the contours to fit; none are all of them.
         """
-        contours, options, near, count = self.contours, self.options, self.near, len(self.contours.flipped)
+        contours, options, count = self.contours, self.options, len(self.contours.flipped)
         left, which = np.full(count, PRUNINGS[options.effort]), np.arange(count)
         passed, every = np.zeros(count, dtype=np.bool_), np.ones(count, dtype=np.bool_)
-        ratio, factor = options.max_ratio, growth_of(options.max_ratio, options.variant)
-        fields, places, offsets = steps.first_places(
-            contours, self.angle, ratio, factor, near, options.variant, self.hold
-        )
+        fields, places, offsets = steps.first_places(contours, self.rules, options.variant, self.hold)
         if again:
             which = np.array(sorted(again), dtype=np.int64)
             parts = [places[offsets[k] : offsets[k + 1]] for k in which.tolist()]
             places, offsets = np.concatenate(parts), offsets_of([len(part) for part in parts])
         for turn in range(ROUNDS):
             done = self.attempt(which, places, offsets)
-            passed[which] = done.most <= near
+            passed[which] = done.most <= self.near
             fewer = every if turn < early else passed & (left > 0)
             left[which] -= passed[which]
             which, places, offsets = steps.changed(
-                contours, fields, done.trial, near, ~passed, fewer, self.hold, self.angle, ratio, factor,
+                contours, fields, done.trial, ~passed, fewer, self.hold, self.rules,
                 # Later rounds put vertices into the spans that fail, which ends sooner but is uneven.
                 POWERS[turn % len(POWERS)], turn < 6,
             )  # fmt: skip
@@ -188,7 +185,7 @@ class _Search:
         A polygon that passes is good, and the next trial omits vertices of it that seem unnecessary. If a trial fails,
         the vertices beside the failure are restored and kept from then on.
         """
-        ratio, left = self.options.max_ratio, [item for item in sorted(self.kept.items()) if self.passes(item[1])]
+        left = [item for item in sorted(self.kept.items()) if self.passes(item[1])]
         good: dict[int, tuple[Round, int]] = {}
         keep, needed = dict[int, BoolArray](), dict[int, BoolArray]()  # of the vertices of good polygons
         for _ in range(THINNINGS[self.options.effort]):
@@ -200,14 +197,14 @@ class _Search:
                     good[k], keep[k] = (found, i), np.ones(len(bounds), dtype=np.bool_)
                 trial, part = good[k][0].trial, partial(good[k][0].part, i=good[k][1])
                 if found.most[i] > self.near:
-                    back = steps.put_back(part(trial.points), keep[k], bounds, self.near, ratio)
+                    back = steps.put_back(part(trial.points), keep[k], bounds, self.near, self.rules.ratio)
                     keep[k], needed[k] = back, needed[k] | (back & ~keep[k])
                 if keep[k].all():
                     turns = self.contours.turns[slice(*self.contours.offsets[k : k + 2])]
                     # Optimistic: the error grows with the length alone, as each trial is measured.
                     keep[k] = steps.sparse(
-                        part(trial.points), part(trial.places), turns, self.angle, bool(self.hold[k]), needed[k],
-                        part(trial.gaps), self.near, ratio, 1.0,
+                        part(trial.points), part(trial.places), turns, bool(self.hold[k]), needed[k], part(trial.gaps),
+                        self.rules, 1.0,
                     )  # fmt: skip
                 if not keep[k].all():
                     places[k] = part(trial.places)[keep[k]]
@@ -226,17 +223,13 @@ class _Search:
         if not rounds:
             return
         parts = [self.uneven(found, keep) for found, keep in rounds.values()]
-        counts, before, surplus, most, limits, controls, knots, parameters, held, *columns = map(
-            np.concatenate, zip(*parts, strict=True)
-        )
-        trial = steps.Trial(*columns)._replace(offsets=offsets_of(counts))
+        counts, before, surplus, most, limits, *columns = map(np.concatenate, zip(*parts, strict=True))
+        splines, trial = fairing.Splines(*columns[:4]), steps.Trial(*columns[4:])._replace(offsets=offsets_of(counts))
         again, moved = limits > 0, trial.points.copy()
         for _ in range(fairing.TRIES):
             if len(before) == 0:
                 break
-            fairing.fair(
-                self.contours, trial, controls, knots, parameters, held, surplus, limits, again, self.near, moved
-            )
+            fairing.fair(self.contours, trial, splines, surplus, limits, again, self.near, moved)
             done = self.run(trial.which, trial.places, trial.offsets, moved)
             if len(done.pieces) < len(moved):  # vertices fell together
                 break
@@ -250,11 +243,9 @@ class _Search:
                 self.kept[int(trial.which[n])] = done, n
             again = fairing.lowered(limits, trial.offsets, done.trial.bounds, self.near, peaks, most)
             left = ~good & np.logical_or.reduceat(again, starts).any(axis=1)
-            every = (before, surplus, most, limits, again, moved, controls, knots, parameters, held, *trial)
-            before, surplus, most, limits, again, moved, controls, knots, parameters, held, *columns = steps.chosen(
-                every, trial.offsets, left
-            )
-            trial = steps.Trial(*columns)
+            every = (before, surplus, most, limits, again, moved, *splines, *trial)
+            before, surplus, most, limits, again, moved, *columns = steps.chosen(every, trial.offsets, left)
+            splines, trial = fairing.Splines(*columns[:4]), steps.Trial(*columns[4:])
 
     def uneven(self, found: Round, keep: BoolArray) -> list[Any]:
         """What :meth:`fair` begins with, of the contours that are to be faired among some of a round.
@@ -279,14 +270,14 @@ class _Search:
         """Interpolate contours through their points at places, measure, and keep improvements."""
         done = self.run(which, places, offsets, steps.polygons(self.contours, which, places, offsets))
         for i, k in enumerate(done.trial.which.tolist()):
-            if k not in self.kept or self.is_better((done, i), self.kept[k]):
+            if k not in self.kept or self.wrong((done, i)) < self.wrong(self.kept[k]):
                 self.kept[k] = done, i
         return done
 
     def run(self, which: IntArray, places: FloatArray, offsets: IntArray, points: FloatArray) -> Round:
         """Interpolate contours through points at their places, or beside them, and measure."""
         try:
-            held = steps.held_corners(self.contours, which, places, offsets, self.angle, self.hold)
+            held = steps.held_corners(self.contours, which, places, offsets, self.rules.corner_angle, self.hold)
             held = held if held.any() else NONE_HELD
             found = interpolated(points, offsets, self.options, held)
         except GlyphsplineError as error:
@@ -307,12 +298,10 @@ class _Search:
         """Whether a part of a round is within the distance allowed."""
         return bool(found[0].most[found[1]] <= self.near)
 
-    def is_better(self, new: tuple[Round, int], old: tuple[Round, int]) -> bool:
-        """Whether a part of a round replaces another one."""
-        if self.passes(old):
-            counts = [len(found.part(found.trial.places, i)) for found, i in (new, old)]
-            return self.passes(new) and counts[0] < counts[1]
-        return bool(new[0].most[new[1]] < old[0].most[old[1]])
+    def wrong(self, found: tuple[Round, int]) -> tuple[float, int]:
+        """How far a part of a round is off if that is too far, and else how many vertices it has."""
+        done, i = found
+        return (0.0, len(done.part(done.trial.places, i))) if self.passes(found) else (float(done.most[i]), 0)
 
     def converted(self, contours: ContourArrays, tolerance: float) -> ConvertedContours:
         """The results: measured in the fitted direction, returned in the given one."""

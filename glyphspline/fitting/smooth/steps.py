@@ -23,13 +23,26 @@ from .canonical_contours import TABLE, CanonicalContours, chain_of, points_at, t
 from .spacing import MOST, at_corners, failed, first_field, graded, laid, lowered, off_corners, spans_after, with_more
 
 
+class Rules(NamedTuple):
+    """How vertices are laid.
+
+    Attributes:
+        near: the distance allowed, in font units. corner_angle: turn in radians from which a joint is a corner.
+        ratio: at most, of adjacent chords. factor: by which they grow at most.
+    """
+
+    near: float
+    corner_angle: float
+    ratio: float
+    factor: float
+
+
 @compiled
 def first_places(
-    contours: CanonicalContours, corner_angle: float, ratio: float, factor: float, near: float, variant: int,
-    hold: BoolArray,
-) -> tuple[FloatArray, FloatArray, IntArray]:  # fmt: skip
+    contours: CanonicalContours, rules: Rules, variant: int, hold: BoolArray
+) -> tuple[FloatArray, FloatArray, IntArray]:
     """The fields of all contours end to end, and ragged places to begin with."""
-    count = len(contours.offsets) - 1
+    count, (near, corner_angle, ratio, factor) = len(contours.offsets) - 1, rules
     fields, K = np.empty(len(contours.turns) * TABLE + count), len(contours.cubics) // len(contours.turns)
     offsets, values = np.zeros(count + 1, dtype=np.int64), np.empty(1024)
     for k in range(count):
@@ -173,8 +186,8 @@ def sharpened(
 
 @compiled
 def changed(
-    contours: CanonicalContours, fields: FloatArray, trial: Trial, near: float, more: BoolArray, fewer: BoolArray,
-    hold: BoolArray, corner_angle: float, ratio: float, factor: float, power: float, anew: bool,
+    contours: CanonicalContours, fields: FloatArray, trial: Trial, more: BoolArray, fewer: BoolArray, hold: BoolArray,
+    rules: Rules, power: float, anew: bool,
 ) -> tuple[IntArray, FloatArray, IntArray]:  # fmt: skip
     """The contours of a trial that change, and their ragged places.
 
@@ -183,11 +196,10 @@ def changed(
         more: (K,) whether to have more vertices where a contour misses the tolerance. fewer: (K,) whether to remove
             vertices that seem unnecessary. hold: (K,) whether control points of corners are held at them. All three
             are indexed by contour.
-        ratio: at most, of adjacent chords. factor: by which they grow at most.
         power: the error of a span is assumed to grow with this power of its length.
         anew: whether more vertices are respaced, evenly, or inserted into the spans that miss the tolerance.
     """
-    which, places, offsets, points, _, bounds, gaps, worst, _ = trial
+    (which, places, offsets, points, _, bounds, gaps, worst, _), (near, corner_angle, ratio, factor) = trial, rules
     those, new = np.empty(len(which), dtype=np.int64), np.zeros(len(which) + 1, dtype=np.int64)
     values, count = np.empty(len(places) + 1024), 0
     growth = np.log(factor)
@@ -204,7 +216,7 @@ def changed(
                 for c in range(len(corners)):
                     for j in range(spans_after(corners, c, b - a) + 1 if fails[c] else 0):
                         needed[(corners[c] + j) % (b - a)] = True
-            keep = sparse(points[a:b], here, turns, corner_angle, hold[k], needed, gaps[a:b], near, ratio, power)
+            keep = sparse(points[a:b], here, turns, hold[k], needed, gaps[a:b], rules, power)
             here, bound, at = here[keep], bound[keep], at[keep]
         if more[k]:
             corners = at_corners(here, turns, corner_angle)
@@ -227,21 +239,21 @@ def changed(
 
 @compiled
 def sparse(
-    points: FloatArray, places: FloatArray, turns: FloatArray, corner_angle: float, hold: bool, needed: BoolArray,
-    errors: FloatArray, near: float, ratio: float, power: float,
+    points: FloatArray, places: FloatArray, turns: FloatArray, hold: bool, needed: BoolArray, errors: FloatArray,
+    rules: Rules, power: float,
 ) -> BoolArray:  # fmt: skip
     """Which vertices of a closed polygon to keep: not those without which the error would still be small enough.
 
     The error of a span is taken to grow with the given power of its length. Smallest errors first, no two neighbours
-    at once, and none without which adjacent chords would be beyond ``ratio``. Without a vertex at a corner, the error
+    at once, and none without which adjacent chords would be beyond the ratio. Without a vertex at a corner, the error
     is at least its height over the chord that takes its place. At a held corner it grows with the chord beside it.
 
     Args:
-        points: (n, d), at places (n,). turns: at the joints; from ``corner_angle`` a joint is a corner.
+        points: (n, d), at places (n,). turns: at the joints.
         hold: whether control points of corners are held at them.
         needed: (n,) vertices that are kept in any case. errors: (n,) of the span after each vertex.
     """
-    n = len(points)
+    n, (near, corner_angle, ratio, _) = len(points), rules
     keep, expected, corner = np.ones(n, dtype=np.bool_), np.full(n, np.inf), np.empty(n, dtype=np.bool_)
     for i in range(n):
         j = int(places[i])

@@ -8,7 +8,7 @@ and where no glyph was fitted so, here.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +22,7 @@ from fontTools.varLib.builder import buildVarData, buildVarRegionList, buildVarS
 from fontTools.varLib.hvar import add_HVAR
 
 from ...errors import GlyphsplineError
+from ...fitting.first_good import first_good
 from ...outlines.masters import Masters
 from ...readers import Font
 from ...readers.source import reusing
@@ -66,15 +67,20 @@ def to_other_outlines(
     plain, kept = to_variable_font(empty, as_is, flavour, tolerance=near)
     for name, reason in kept.left.items():
         log.warning("%s, glyph %r: %s: left empty in the written font", source.path, name, reason)
-    written, left = Font(source.path, plain, 0, None), dict[str, str]()
-    while True:
-        wanted = [name for name in redrawn if name not in left]
-        drawn = MadeOnDemand(wanted, lambda name: oriented(redrawn[name], flavour))
-        data, facts = to_variable_font(written, drawn, flavour, tolerance=near, family=family)
-        far = [name for name, glyph in facts.glyphs.items() if bound_of(glyph, redrawn[name]) > tolerance]
-        if not far:
-            return data, replace(facts, left={**facts.left, **left})
-        left |= dict.fromkeys(far, "its quadratics in whole units would be beyond the tolerance")
+    written = Font(source.path, plain, 0, None)
+
+    def fonts() -> Iterator[tuple[bytes, VariableSummary, int]]:
+        left = dict[str, str]()
+        while True:
+            wanted = [name for name in redrawn if name not in left]
+            drawn = MadeOnDemand(wanted, lambda name: oriented(redrawn[name], flavour))
+            data, facts = to_variable_font(written, drawn, flavour, tolerance=near, family=family)
+            far = [name for name, glyph in facts.glyphs.items() if bound_of(glyph, redrawn[name]) > tolerance]
+            yield data, replace(facts, left={**facts.left, **left}), len(far)
+            left |= dict.fromkeys(far, "its quadratics in whole units would be beyond the tolerance")
+
+    data, facts, _ = first_good(fonts(), lambda font: font[2:])
+    return data, facts
 
 
 def _masters(source: Font, name: str, said: set[str]) -> Masters:

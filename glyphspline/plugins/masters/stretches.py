@@ -7,13 +7,14 @@ themselves: a glyph drawn anew has no kink that its source has not, at any locat
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
+from ...fitting.first_good import first_good
 from ...outlines.flaws.kinds import THRESHOLDS
 from ...outlines.flaws.turns import joint_controls, turns_of
 from ...outlines.masters import MasterContour, Masters
@@ -95,13 +96,17 @@ def settle(
             none.
     """
     source = Turning(masters)
-    while True:
-        contours = stored()
-        found = Turning(replace(masters, contours=contours, repeats=None))
-        bad = found.not_in(source)
-        segments = [[s for owner, s in bad if owner == c] + vanished(contour) for c, contour in enumerate(contours)]
-        if not any([retreat(c, own) for c, own in enumerate(segments) if own]):  # noqa: C419 (all)
-            return source, found
+
+    def drawings() -> Iterator[tuple[Turning, int]]:
+        while True:
+            contours = stored()
+            found = Turning(replace(masters, contours=contours, repeats=None))
+            bad = found.not_in(source)
+            segments = [[s for owner, s in bad if owner == c] + vanished(contour) for c, contour in enumerate(contours)]
+            yield found, sum(retreat(c, own) for c, own in enumerate(segments) if own)
+
+    found, _ = first_good(drawings(), lambda drawing: drawing[1:])
+    return source, found
 
 
 def locations(masters: Masters) -> FloatArray:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...fitting.first_good import first_good
 from ...outlines.flaws.joints import rounding_turns
 from ...outlines.flaws.kinds import KINDS
 from ...outlines.flaws.turns import joint_controls, turns_of
@@ -372,19 +373,23 @@ def _settled(
     check: Callable[[Masters], tuple[Masters, State]],
 ) -> tuple[Masters, State]:  # fmt: skip
     """The glyph with those proposals that stand together, and what is found in it."""
-    while any(group.now for group in groups):
-        trial = with_moves(now, [(group.contour, group.now) for group in groups if group.now])
-        given_up = _far(first, trial, groups, design)
-        if not given_up:
-            trial, after = check(trial)
-            given_up = _far(first, trial, groups, design) or _found_new(trial, groups, before, after)
-        if not given_up and not keeps_ink(first, trial, design):
-            given_up = [(_spoiling(first, now, groups, design, check), INK)]
-        for group, why in given_up:
-            group.next(why)
-        if not given_up:
-            return trial, after
-    return now, before
+
+    def trials() -> Iterator[tuple[Masters, State, int]]:
+        while any(group.now for group in groups):
+            trial, after = with_moves(now, [(group.contour, group.now) for group in groups if group.now]), before
+            given_up = _far(first, trial, groups, design)
+            if not given_up:
+                trial, after = check(trial)
+                given_up = _far(first, trial, groups, design) or _found_new(trial, groups, before, after)
+            if not given_up and not keeps_ink(first, trial, design):
+                given_up = [(_spoiling(first, now, groups, design, check), INK)]
+            yield trial, after, len(given_up)
+            for group, why in given_up:
+                group.next(why)
+        yield now, before, 0
+
+    mended, found, _ = first_good(trials(), lambda trial: trial[2:])
+    return mended, found
 
 
 def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) -> list[tuple[Group, str]]:

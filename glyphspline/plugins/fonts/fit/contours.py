@@ -15,6 +15,7 @@ Lengths here are in steps of the grid, on which points have whole coordinates.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ import numpy as np
 from ....arrays import put
 from ....compiled import compiled
 from ....curves.nearest import near_places
+from ....fitting.first_good import first_good
 from ....fitting.sharp.settings import Settings
 from ....types import BoolArray, FloatArray, IntArray
 from .gates import Limits, jumps_of, mixed, on_grid
@@ -165,15 +167,18 @@ def fit_run(own: Stretch, start: IntArray) -> tuple[FloatArray, IntArray]:
     n, source, degrees, em, closed = len(start), own.cubics, own.degrees, own.limits.em, own.closed
     jumps, whole = jumps_of(source, degrees, closed, em), on_grid(source, degrees, closed)
     tries = Tries(own, start, KEPT + (not whole and bool((degrees == 2).any())))
-    last, nodes = source, np.arange(n + 1)
-    for _ in range(ATTEMPTS):
-        P, places = tries.chosen()
-        if P.shape[1] == n and jumps == 0 and whole:
-            break
-        if tries.passes(P, places):
-            if P.shape[1] < n or not whole or jumps_of(P, degrees, closed, em) < jumps:
-                last, nodes = P, places
-            break
+
+    def chains() -> Iterator[tuple[FloatArray, IntArray, bool]]:
+        for _ in range(ATTEMPTS):
+            P, places = tries.chosen()
+            if P.shape[1] == n and jumps == 0 and whole:
+                break
+            yield P, places, tries.passes(P, places)
+        yield source, np.arange(n + 1), True
+
+    P, places, _ = first_good(chains(), lambda chain: (int(not chain[2]),))
+    if P.shape[1] == n and whole and jumps_of(P, degrees, closed, em) >= jumps:
+        P, places = source, np.arange(n + 1)
     if len(source) == 1:
-        last = let_meet(own, last, nodes, start)
-    return last, nodes[:-1]
+        P = let_meet(own, P, places, start)
+    return P, places[:-1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -11,11 +11,12 @@ import numpy as np
 
 from ....curves.pairing import SHARPNESS, pair_instances
 from ....fitting.faithful import Fits
+from ....fitting.first_good import first_good
 from ....fitting.ladders import SHARP_TRIES
 from ....fitting.measures import distance_columns
 from ....fitting.options import Options
 from ....fitting.results import ConvertedContours, not_fitted
-from ....fitting.sharp.settings import EFFORTS, LONG_LINE
+from ....fitting.sharp.settings import EFFORTS, LONG_LINE, Settings
 from ....outlines.contour_arrays import ContourArrays, joined, lines_and_cubics, offsets_of
 from ....outlines.flaws.bends import bend_findings
 from ....outlines.flaws.joints import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
@@ -27,8 +28,8 @@ from .gates import CORNER, Limits, mixed
 from .gates import KINK as KINKED
 from .tries import KEPT
 
-GATES = (2, 4, KEPT, KEPT + 1, KEPT + 2, KEPT + 2)
-"""As how many tries the finding of a check counts, in each round; in the last ones the whole contour is kept."""
+LEVELS = (2, 4, KEPT, KEPT + 1, KEPT + 2, KEPT + 2, KEPT + 2)
+"""As how many tries the finding of a check counts, in each fit; in the last ones the whole contour is kept."""
 
 TURNING = len(KINDS)
 """Beside the kinds of a check: a joint of curves that turns."""
@@ -93,79 +94,108 @@ def fit_for_fonts(
         corners: (V, K) weights of the masters at the corners of the design space's grid. mixes: (M, K) those with which
             joints are looked at.
     """
-    source = sources[0]
-    tries = np.zeros(len(source.degrees), dtype=np.int64)
-    found = _fitted(sources, tries, tries == 0, None, corners, mixes, options, tolerance, share, em)
-    expected = []
-    for master in sources:
-        # Beside points that are rounded, a segment that is kept may be found wrong as if it were rounded too.
-        written = findings(master.rounded(options.precision), em)
-        expected.append(np.concatenate([findings(master, em), written[~np.isin(written[:, WHAT], (KINK, TURNING))]]))
-    for level in GATES:
-        wrong, places = np.zeros(len(tries), dtype=np.bool_), [each.anchors for each in found]
-        for v, (master, known) in enumerate(zip(sources, expected, strict=True)):
-            wrong |= _new_findings(master, known, joined([each.curves[v] for each in found]), places, em)
-        for c, each in enumerate(found):
-            # Where the source has decimals, fits that were near enough may not be once their ends are rounded too.
-            for s in [] if each.bound <= tolerance else np.flatnonzero(~(each.bounds <= tolerance)).tolist():
-                wrong[source.offsets[c] + _stretch(each.anchors[s, 1], each.anchors[s + 1, 1], source, c)] = True
-        which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1).tolist()
-        before = tries.copy()
-        tries[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT + 1)
-        for c in which if level > KEPT + 1 else ():
-            a, b = source.offsets[c : c + 2]
-            tries[a:b] = np.maximum(tries[a:b], KEPT)
-        if (tries == before).all():
-            break
-        own = np.concatenate([np.arange(source.offsets[c], source.offsets[c + 1]) for c in which])
-        chosen, last = [master.chosen(which) for master in sources], [found[c].fitted for c in which]
-        fresh = tries[own] != before[own]
-        again = _fitted(chosen, tries[own], fresh, last, corners, mixes, options, tolerance, share, em)
-        for c, each in zip(which, again, strict=True):
-            found[c] = each
-    return found
-
-
-def _fitted(
-    sources: Sequence[ContourArrays], tries: IntArray, fresh: BoolArray, last: Sequence[Fitted] | None,
-    corners: FloatArray, mixes: FloatArray, options: Options, tolerance: float, share: float, em: float,
-) -> list[FontCurve]:  # fmt: skip
-    """Contours fitted and certified.
-
-    Args:
-        tries: (m,) of each segment that were in vain; ``KEPT`` and more keep it. fresh, last: see :func:`fit_contour`.
-    """
-    scale, source, V = 10.0**options.precision, sources[0], len(corners)
-    near = scale * share * tolerance
+    scale = 10.0**options.precision
     settings = EFFORTS[options.effort](
-        near=near, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em * scale, c2=False,
-        margin=0.0, residual=0.0,
+        near=scale * share * tolerance, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em * scale,
+        c2=False, margin=0.0, residual=0.0,
     )  # fmt: skip
-    cubics = np.stack([all_cubics(master) for master in sources])
-    limits = Limits(near, em * scale, settings.chain_rounds, corners, mixes)
-    fits = []
-    for c, (a, b) in enumerate(pairwise(source.offsets.tolist())):
-        own, old = np.ascontiguousarray(scale * cubics[:, a:b]), None if last is None else last[c]
-        fits.append(fit_contour(own, source.degrees[a:b], tries[a:b], settings, limits, fresh[a:b], old))
-    fitted, nodes, kinds, inner, anchors = zip(*fits, strict=True)
-    degrees, offsets = np.concatenate(kinds), offsets_of(list(map(len, nodes)))
-    ends = offsets + np.arange(len(offsets))
-    curves = [chains(each / scale, degrees, offsets) for each in np.concatenate(fitted, axis=1)]
-    written = np.stack([all_cubics(curve.rounded(options.precision)) for curve in curves])
-    bounds, gaps = np.full((2, len(degrees)), np.nan)
-    arcs, sharpness = np.empty((0, 4)), SHARPNESS * tolerance
-    if len(sources) > 1:
-        arcs, sharpness, gaps = np.concatenate(list(map(runs_of, inner, anchors))), 0.0, np.zeros(len(degrees))
-    pair_instances(
-        V, mixed(corners, written), offsets, mixed(corners, cubics), source.offsets, np.concatenate(anchors), ends,
-        arcs, sharpness, tolerance, bounds, gaps,
-    )  # fmt: skip
-    if len(sources) > 1:
-        gaps[:] = np.nan
-    return [
-        FontCurve(tuple(curve.part(c, c + 1) for curve in curves), fits[c], bounds[a:b], float(gaps[a:b].max()))
-        for c, (a, b) in enumerate(pairwise(offsets.tolist()))
-    ]
+    limits = Limits(settings.near, em * scale, settings.chain_rounds, corners, mixes)
+    wanted = FontSources(sources, settings, limits, options.precision, tolerance, em)
+    return first_good(wanted.fits(), lambda fit: (int((fit.again != fit.tries).sum()),)).curves
+
+
+class FontFit(NamedTuple):
+    """Curves of all contours, the tries of each of the m segments that were in vain before, and those that are now."""
+
+    curves: list[FontCurve]
+    tries: IntArray
+    again: IntArray
+
+
+class FontSources(NamedTuple):
+    """Contours in K masters that are to be fitted for fonts.
+
+    Attributes:
+        settings, limits: in steps of the grid. precision: decimals. tolerance, em: in font units.
+    """
+
+    sources: Sequence[ContourArrays]
+    settings: Settings
+    limits: Limits
+    precision: int
+    tolerance: float
+    em: float
+
+    def fits(self) -> Iterator[FontFit]:
+        """Fits: of all contours, and then of those again in which segments of the last one are wrong."""
+        source, expected = self.sources[0], [self.expected(master) for master in self.sources]
+        tries = np.zeros(len(source.degrees), dtype=np.int64)
+        curves = self.fitted(self.sources, tries, tries == 0, None)
+        for level in LEVELS:
+            wrong = self.wrong(curves, expected)
+            which = np.unique(np.searchsorted(source.offsets, np.flatnonzero(wrong), side="right") - 1).tolist()
+            again = tries.copy()
+            again[wrong] = np.minimum(np.maximum(tries[wrong], level), KEPT + 1)
+            for c in which if level > KEPT + 1 else ():
+                a, b = source.offsets[c : c + 2]
+                again[a:b] = np.maximum(again[a:b], KEPT)
+            yield FontFit(curves, tries, again)
+            own = np.concatenate([np.arange(source.offsets[c], source.offsets[c + 1]) for c in which])
+            chosen, last = [master.chosen(which) for master in self.sources], [curves[c].fitted for c in which]
+            new = dict(zip(which, self.fitted(chosen, again[own], again[own] != tries[own], last), strict=True))
+            curves, tries = [new.get(c, each) for c, each in enumerate(curves)], again
+
+    def expected(self, master: ContourArrays) -> FloatArray:
+        """The findings of a master, which its fit may have too."""
+        # Beside points that are rounded, a segment that is kept may be found wrong as if it were rounded too.
+        written = findings(master.rounded(self.precision), self.em)
+        return np.concatenate([findings(master, self.em), written[~np.isin(written[:, WHAT], (KINK, TURNING))]])
+
+    def wrong(self, curves: Sequence[FontCurve], expected: Sequence[FloatArray]) -> BoolArray:
+        """(m,) the segments of the sources where curves have a finding that is not expected, or are too far off."""
+        source, places = self.sources[0], [each.anchors for each in curves]
+        wrong = np.zeros(len(source.degrees), dtype=np.bool_)
+        for v, (master, known) in enumerate(zip(self.sources, expected, strict=True)):
+            wrong |= _new_findings(master, known, joined([each.curves[v] for each in curves]), places, self.em)
+        for c, each in enumerate(curves):
+            # Where the source has decimals, fits that were near enough may not be once their ends are rounded too.
+            for s in [] if each.bound <= self.tolerance else np.flatnonzero(~(each.bounds <= self.tolerance)).tolist():
+                wrong[source.offsets[c] + _stretch(each.anchors[s, 1], each.anchors[s + 1, 1], source, c)] = True
+        return wrong
+
+    def fitted(
+        self, sources: Sequence[ContourArrays], tries: IntArray, fresh: BoolArray, last: Sequence[Fitted] | None
+    ) -> list[FontCurve]:
+        """Some of the contours fitted and certified.
+
+        Args:
+            tries: (m,) of each segment that were in vain; ``KEPT`` and more keep it. fresh, last: see
+                :func:`fit_contour`.
+        """
+        scale, source, (*_, corners, _) = 10.0**self.precision, sources[0], self.limits
+        cubics, fits = np.stack([all_cubics(master) for master in sources]), []
+        for c, (a, b) in enumerate(pairwise(source.offsets.tolist())):
+            own, old = np.ascontiguousarray(scale * cubics[:, a:b]), None if last is None else last[c]
+            fits.append(fit_contour(own, source.degrees[a:b], tries[a:b], self.settings, self.limits, fresh[a:b], old))
+        fitted, nodes, kinds, inner, anchors = zip(*fits, strict=True)
+        degrees, offsets = np.concatenate(kinds), offsets_of(list(map(len, nodes)))
+        ends = offsets + np.arange(len(offsets))
+        curves = [chains(each / scale, degrees, offsets) for each in np.concatenate(fitted, axis=1)]
+        written = np.stack([all_cubics(curve.rounded(self.precision)) for curve in curves])
+        bounds, gaps = np.full((2, len(degrees)), np.nan)
+        arcs, sharpness = np.empty((0, 4)), SHARPNESS * self.tolerance
+        if len(sources) > 1:
+            arcs, sharpness, gaps = np.concatenate(list(map(runs_of, inner, anchors))), 0.0, np.zeros(len(degrees))
+        pair_instances(
+            len(corners), mixed(corners, written), offsets, mixed(corners, cubics), source.offsets,
+            np.concatenate(anchors), ends, arcs, sharpness, self.tolerance, bounds, gaps,
+        )  # fmt: skip
+        if len(sources) > 1:
+            gaps[:] = np.nan
+        return [
+            FontCurve(tuple(curve.part(c, c + 1) for curve in curves), fits[c], bounds[a:b], float(gaps[a:b].max()))
+            for c, (a, b) in enumerate(pairwise(offsets.tolist()))
+        ]
 
 
 def runs_of(inner: BoolArray, anchors: FloatArray) -> FloatArray:

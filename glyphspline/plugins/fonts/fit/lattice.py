@@ -82,11 +82,10 @@ def round_run(arrays: RunArrays, samples: FloatArray, first: IntArray, tolerance
     for _ in range(SWEEPS):
         later[:] = False
         for k in range(nodes):
-            after, before = sides(run, k)
-            if (after < 0 and before < 0) or not waiting[k]:
+            if not waiting[k]:
                 continue
             waiting[k] = False
-            if improve(run, k, before, after, measure, em, room, best, seen, parts):
+            if improve(run, k, measure, em, room, best, seen, parts):
                 # Costs reach as far as the joints beside the neighbours.
                 for away in range(-2, 3):
                     o = (k + away) % nodes if run.closed else min(max(k + away, 0), nodes - 1)
@@ -262,15 +261,17 @@ def set_place(found: FloatArray, code: int, place: FloatArray) -> None:
 
 @compiled
 def improve(
-    run: Run, k: int, before: int, after: int, measure: Measure, em: float, room: FloatArray, best: FloatArray,
-    seen: FloatArray, parts: FloatArray,
+    run: Run, k: int, measure: Measure, em: float, room: FloatArray, best: FloatArray, seen: FloatArray,
+    parts: FloatArray,
 ) -> bool:  # fmt: skip
     """Give a node and its handles the cheapest of the neighbouring places on the grid; whether they changed.
 
     Args:
         room, best: (270, 3, 2), (3, 2) of work: the places, and the cheapest. seen, parts: of :func:`cost_at`.
     """
-    P, start = run.P, best
+    P, start, (after, before) = run.P, best, sides(run, k)
+    if after < 0 and before < 0:
+        return False
     for axis in range(2):
         start[1, axis] = P[after, 0, axis] if after >= 0 else P[before, 3, axis]
         start[0, axis] = P[before, 2, axis] if before >= 0 else start[1, axis]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from ....fitting.first_good import first_good
 from ....fitting.sharp.corners import SMOOTH_KINK
 from ....types import BoolArray, FloatArray, IntArray
 from .gates import ALL, DISTANCE, TURNS, crosses_handles, joint_turn, on_grid
@@ -20,10 +22,28 @@ from .tries import KEPT
 JUMPS = 0.1
 """Share of the larger curvature from which a difference is a jump."""
 
-WAYS = ((0, False), (1, False), (2, False), (1, True), (2, True))
-"""How curvatures are let meet at a node, one way after the other: how many cubics on either side of it are moved
-together (none: nearby places alone), and whether other nodes are held to the jumps they have. Without the last two, 69
-of 1,074 jumps of EB Garamond are left instead of 60, and 129 of 1,122 of its Italic instead of 111."""
+
+class MeetingWay(NamedTuple):
+    """How curvatures are let meet at a node.
+
+    Attributes:
+        wide: how many cubics on either side of it are moved together; none: nearby places alone.
+        held: whether other nodes are held to the jumps they have.
+    """
+
+    wide: int
+    held: bool
+
+
+WAYS = (
+    MeetingWay(0, held=False),
+    MeetingWay(1, held=False),
+    MeetingWay(2, held=False),
+    MeetingWay(1, held=True),
+    MeetingWay(2, held=True),
+)
+"""One after the other. Without the last two, 69 of 1,074 jumps of EB Garamond are left instead of 60, and 129 of 1,122
+of its Italic instead of 111."""
 
 OTHERS = 0.03
 """Weight of other nodes at which curvatures jump, where they are not held to that: with 0, more joints jump by more
@@ -104,30 +124,36 @@ class Meeting:
                 continue
             if joint_turn(best.P[0, q - 1 : q or r], best.P[0, q : q + 1]) > SMOOTH_KINK:
                 continue
-            for wide, held in WAYS:
-                if best.jumps[q] <= JUMPS:
-                    break
-                found = self.better(best, q, wide, held)
-                if found is not None:
-                    best = found
-                    # Cubics have changed as far as the widest way reaches, and as far beyond nodes depend on them.
-                    for away in range(-2 * WAYS[-1][0], 2 * WAYS[-1][0] + 1):
-                        waiting[(q + away) % r] = True
+            found = self.met_at(q, best)
+            if found is not best:
+                best = found
+                # Cubics have changed as far as the widest way reaches, and as far beyond nodes depend on them.
+                for away in range(-2 * WAYS[-1].wide, 2 * WAYS[-1].wide + 1):
+                    waiting[(q + away) % r] = True
             waiting[q] = False
         return best
 
-    def better(self, best: Tried, q: int, wide: int, held: bool) -> Tried | None:
-        """The run with cubics moved so that curvatures meet at node q; None if that is no better.
+    def met_at(self, q: int, best: Tried) -> Tried:
+        """The run with curvatures that meet at node q, or else the one at whose nodes the fewest jump."""
+        return first_good(self.ways(best, q), lambda run: (run.jumping if run.jumps[q] > JUMPS else 0,))
 
-        Args:
-            wide, held: see :data:`WAYS`.
-        """
+    def ways(self, best: Tried, q: int) -> Iterator[Tried]:
+        """The run, and better ones, each made of the last one by the next way to let curvatures meet at node q."""
+        yield best
+        for way in WAYS:
+            found = self.better(best, q, way)
+            if found is not None:
+                best = found
+                yield best
+
+    def better(self, best: Tried, q: int, way: MeetingWay) -> Tried | None:
+        """The run with cubics moved so that curvatures meet at node q; None if that is no better."""
         own, limits, r = self.own, self.own.limits, len(self.stays)
-        loose = self.loose(q, max(wide, 1))
+        loose = self.loose(q, max(way.wide, 1))
         settled = np.ones(r, np.bool_)
         settled[loose] = False
         run = own.run(best.P[0].copy(), settled, self.places, self.extrema[0], np.ones(r + 1))
-        if wide and not self.moved_together(run, best.jumps, q, held):
+        if way.wide and not self.moved_together(run, best.jumps, q, way.held):
             return None
         guide = own.guides[0]
         for s in loose:
@@ -139,7 +165,7 @@ class Meeting:
             return None
         if any(crosses_handles(run.P[s]) and not crosses_handles(best.P[0, s]) for s in loose):
             return None
-        return None if self.refused(run, 0.999, ALL if wide else TURNS)[loose].any() else new
+        return None if self.refused(run, 0.999, ALL if way.wide else TURNS)[loose].any() else new
 
     def refused(self, run: Run, share: float, gates: int) -> BoolArray:
         """(r,) the cubics of a run that a gate refuses."""

@@ -6,6 +6,8 @@ place's.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ....arrays import put
@@ -25,22 +27,38 @@ NEARBY = tuple(sorted(((x, y) for x in STEPS for y in STEPS), key=lambda step: s
 """Moves of a node along an axis, and in both, the smallest first."""
 
 
+class Move(NamedTuple):
+    """How a node moves: by (dx, dy); ``level``: the axis on which its handles stay level, -1 if they may turn."""
+
+    level: int
+    dx: float
+    dy: float
+
+
+class MoveCost(NamedTuple):
+    """What moving the points of a cubic costs in distance, see :func:`.nearness.squares`."""
+
+    form: FloatArray
+    exact: FloatArray
+    rest: float
+
+
 @compiled
 def side_places(
-    run: Run, s: int, end: int, level: int, dx: float, dy: float, form: FloatArray, exact: FloatArray, rest: float,
-    far: tuple[float, float, float, bool], em: float, dearest: float, found: FloatArray,
+    run: Run, s: int, end: int, move: Move, of: MoveCost, far: tuple[float, float, float, bool], em: float,
+    dearest: float, found: FloatArray,
 ) -> int:  # fmt: skip
-    """Places of the two inner points of cubic s when the node at one end of it moves by (dx, dy).
+    """Places of the two inner points of cubic s when the node at one end of it moves.
 
     Args:
-        level: the axis on which the handle there stays level; -1 if it may turn. form, exact, rest: see
-            :func:`.nearness.squares`. far: the vector in which the next cubic begins at the other end, its curvature
-            there, and whether that end's handle stays. dearest: the cost from which places are left out.
+        of: the cubic's. far: the vector in which the next cubic begins at the other end, its curvature there, and
+            whether that end's handle stays. dearest: the cost from which places are left out.
         found: (2025, 8) receives the cost, the curvature, the handle's vector, and both points.
 
     Returns:
         Their number.
     """
+    (level, dx, dy), (form, exact, rest) = move, of
     n, h, b, f = (0, 1, 2, 3) if end == 0 else (3, 2, 1, 0)
     p, own, count, part = run.P[s], run.P[s].copy(), 0, np.empty((4, 5))
     own[n, 0], own[n, 1] = p[n, 0] + dx, p[n, 1] + dy
@@ -143,20 +161,17 @@ def meet(
     level = 0 if P[a, 2, 0] == nx and P[q, 1, 0] == nx else -1
     level = 1 if P[a, 2, 1] == ny and P[q, 1, 1] == ny else level
     one, two, least = beyond_end(run, a, 0), beyond_end(run, q, 1), np.inf
-    best = np.empty((5, 2))
+    best, costs = np.empty((5, 2)), (MoveCost(forms[0], exact[0], rest[0]), MoveCost(forms[1], exact[1], rest[1]))
     for code in range(5 if level >= 0 else 25):
         dx, dy = NEARBY[code] if level < 0 else (0.0, STEPS[code]) if level == 0 else (STEPS[code], 0.0)
-        before = side_places(
-            run, a, 1, level, dx, dy, forms[0], exact[0], rest[0], one, em, min(FAREST, least), room[0]
-        )
+        move = Move(level, dx, dy)
+        before = side_places(run, a, 1, move, costs[0], one, em, min(FAREST, least), room[0])
         left = np.inf
         for u in range(before):
             left = min(left, room[0, u, 0])
         if before == 0 or left >= least:
             continue
-        after = side_places(
-            run, q, 0, level, dx, dy, forms[1], exact[1], rest[1], two, em, min(FAREST, least - left), room[1]
-        )
+        after = side_places(run, q, 0, move, costs[1], two, em, min(FAREST, least - left), room[1])
         for u in range(before):
             if room[0, u, 0] >= least:
                 continue

@@ -16,178 +16,103 @@ certificate holds in the whole design space. A single outline is a master with t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from ....curves.cubics import directions, length
+from ....fitting.first_good import first_good
 from ....fitting.sharp.corners import NO_HANDLE
 from ....fitting.sharp.settings import Settings
 from ....types import BoolArray, FloatArray, IntArray
-from .chains import Quads, joined, relax
+from .chains import relax
 from .grid import EXPLICIT, aim, round_quads
 from .harmony import end_jump
 from .outlines import Given, Stored, is_ring, read_contour, set_unit
 from .refusals import distances, wrong_quads
-from .starts import begin, ended
-
-NEAR = (0.7, 0.35, 0.35, 0.0)
-"""Of the tolerance: how near a section of a source of quadratics on the grid is to be before it is rounded, on each
-try; 0 keeps it."""
-
-OTHERS, MORE = (0.7, 0.7, 0.5, 0.5, 0.7, 0.5, 0.35, 0.35, 0.35), (0, 1, 0, 1, 0, 1, 2, 4, 8)
-"""The same for other sources, which have nothing to keep; and quadratics beyond the fewest."""
-
-MOST = 4
-"""Quadratics for a cubic, and twice as many for a section."""
+from .sections import Sections, next_tries
 
 ATTEMPTS = 10
 """Tries of a run."""
-
-HOPELESS = 3.0
-"""Of what is near enough: how far quadratics may be after two steps before one more is tried."""
-
 
 Points = tuple[FloatArray, BoolArray, float]
 """Points (K, n, 2), whether each is on the curve, and their certified distance from the source."""
 
 
-@dataclass(frozen=True)
-class Sections:
-    """The sections of a run, each from a joint to a joint.
+class Rounded(NamedTuple):
+    """Quadratics on the grid that may be the points of a run.
 
     Attributes:
-        made: those made before, by their joints and tries.
+        c, node, implied: see :class:`.fit.chains.Quads`. far: the certified distance from the source.
+        wrong: 1 where they are refused; by how much they miss or turn then; and else how many points they are.
     """
 
-    given: Given
-    tolerance: float
-    made: dict[tuple[int, int, int], Quads] = field(default_factory=dict)
-
-    def assembled(self, ends: list[int], tries: IntArray) -> Quads:
-        """The quadratics of the sections between the joints ``ends`` of a run, each as its tries say."""
-        stored, parts = self.given.stored, list[Quads]()
-        for (a, b), n in zip(pairwise(ends), tries.tolist(), strict=True):
-            if (a, b, n) not in self.made:
-                self.made[a, b, n] = self.section(a, b, n)
-            parts.append(self.made[a, b, n])
-        q = joined(parts)
-        starts = q.owner[1:] > q.owner[:-1]
-        q.implied[1:-1][starts] = (np.maximum(tries[1:], tries[:-1]) < EXPLICIT) | stored.implied[ends[1:-1]]
-        return q
-
-    def section(self, a: int, b: int, tries: int) -> Quads:
-        """The quadratics from joint a to joint b: as few as are near enough, and some more, or what is stored."""
-        given, known = self.given, self.given.stored.known
-        near = (NEAR if known else OTHERS)[tries] * self.tolerance
-        if near == 0.0:
-            return self.stored(a, b, True)
-        most, level = b - a - 1 if known else MOST * (b - a + 1), False
-        count, found = self.fewest(a, b, near, most, False)
-        if tries < EXPLICIT and (given.level[a] or given.level[b]):
-            own_count, own = self.fewest(a, b, near, min(count + 1, most), True)
-            if own is not None:
-                count, found, level = own_count, own, True
-        if known:
-            return self.stored(a, b, tries > 0) if found is None else found
-        if found is not None and MORE[tries] == 0:
-            return found
-        count += 0 if found is None else MORE[tries]
-        begun, q = self.begun(a, b, count, level)
-        while not begun:
-            count -= 1
-            begun, q = self.begun(a, b, count, level)
-        relax(q, given.joints.samples, near / 2, np.inf)
-        return q
-
-    def fewest(self, a: int, b: int, near: float, most: int, level: bool) -> tuple[int, Quads | None]:
-        """The number of quadratics, at most ``most``, that follow joints a to b, and these if they are so near."""
-        given, samples = self.given, self.given.joints.samples
-        enough = max(near, 1.05 * float(max(given.off[a], given.off[b])))  # what is on the grid is no nearer
-        for count in range(1, most + 1):
-            begun, q = self.begun(a, b, count, level)
-            if not begun:
-                return count - 1, None
-            if relax(q, samples, near / 2, HOPELESS * enough) <= enough:
-                return count, q
-        return most, None
-
-    def begun(self, a: int, b: int, count: int, level: bool) -> tuple[bool, Quads]:
-        """So many quadratics, and whether there are samples for them; ``level``: along lines at their ends."""
-        given = self.given
-        before, behind = level and bool(given.level[a]), level and bool(given.level[b])
-        return begin(given.ends, given.joints.samples, a, b, count, before, behind)
-
-    def stored(self, a: int, b: int, keep: bool) -> Quads:
-        """The quadratics that are stored from joint a to joint b, which may move unless the section is to ``keep``
-        them."""
-        given, stored, n = self.given, self.given.stored, b - a
-        q = ended(given.ends, a, b, n, False, False)._replace(
-            c=stored.control[:, a:b].copy(), lo=given.joints.first[a : b + 1].copy(),
-            fixed=np.full(n, keep), held=np.full(n, keep),
-        )  # fmt: skip
-        q.node[:, :n], q.node[:, n] = stored.node[:, a:b], stored.node[:, b % len(given.line)]
-        q.T[:, 1:n] = given.joints.leaving[:, a + 1 : b]
-        if keep:
-            q.tied[:], q.implied[1:n] = False, stored.implied[a + 1 : b]
-        return q
-
-
-def next_tries(q: Quads, bad: BoolArray, stored: bool, tries: IntArray) -> bool:
-    """Give sections with bad quadratics another try; whether there is one."""
-    before, last = tries.copy(), len(NEAR if stored else OTHERS) - 1
-    failed, moved = np.zeros((2, len(tries)), np.bool_)
-    failed[q.owner[bad & ~q.held]], moved[q.owner[bad & q.held]] = True, True
-    for f in np.flatnonzero(failed | moved).tolist():
-        if failed[f]:
-            tries[f] = min(tries[f] + 1, last)
-        if moved[f] and tries[f] < EXPLICIT:
-            tries[f] = EXPLICIT
-        elif moved[f]:
-            # What is implied in the source moves with the control point beyond: both stay.
-            tries[max(f - 1, 0) : f + 2] = len(NEAR) - 1
-    return not np.array_equal(tries, before)
+    c: FloatArray
+    node: FloatArray
+    implied: BoolArray
+    far: float
+    wrong: tuple[int, float, int]
 
 
 def fit_run(given: Given, i: int, j: int, tolerance: float) -> Points:
     """Points of the quadratics from joint i to joint j, without the last: at most as many as are stored."""
-    n, K, stored, samples = j - i, len(given.cubics), given.stored, given.joints.samples
-    ring, near = is_ring(given.cuts, i, j), 0.999 * tolerance
-    own = n + 1 + np.count_nonzero(~stored.implied[i + 1 : j])
-    sections, best, count, least, reached, done = Sections(given, tolerance), None, 0, np.inf, np.inf, False
+    best = first_good(_rounded(given, i, j, tolerance), lambda each: each.wrong)
+    return (*points_of(best.c, best.node, best.implied), best.far)
+
+
+def _rounded(given: Given, i: int, j: int, tolerance: float) -> Iterator[Rounded]:
+    """What is stored of a run, and then other quadratics, cut into ever more sections, each of which has its tries."""
+    n, K, stored, nearest = j - i, len(given.cubics), given.stored, np.inf
+    own = n + 1 + int(np.count_nonzero(~stored.implied[i + 1 : j]))
+    wrong = (0, 0.0, own) if stored.known else (1, np.inf, 0)
+    yield Rounded(stored.control[:, i:j], stored.node[:, i : j + 1], stored.implied[i:j], stored.drift, wrong)
+    if stored.known and (n == 1 or stored.stays[i:j].any()):
+        return
+    sections = Sections(given, tolerance)
     # Sections end nowhere inside: extrema of all masters at one parameter are more than most have; then at extrema; and
     # where nothing is near enough, at all joints.
     for cut in range(1 if K == 1 else 0, 3):
         stops = given.upright[i : j + 1] & (cut == 1) | (cut == 2)
         stops[0] = stops[n] = True
         ends = (i + np.flatnonzero(stops)).tolist()
-        if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or reached <= tolerance)):
+        if (cut == 1 and K > 1 and len(ends) == 2) or (cut == 2 and (stored.known or nearest <= tolerance)):
             continue
-        tries = np.full(len(ends) - 1, EXPLICIT if cut == 2 else 0)
-        for _ in range(0 if stored.known and (n == 1 or stored.stays[i:j].any()) else ATTEMPTS):
-            q = sections.assembled(ends, tries)
+        for each in _of_sections(sections, ends, EXPLICIT if cut == 2 else 0):
+            if cut < 2 or each.far <= tolerance:
+                nearest = min(nearest, each.far)
+                yield each
+
+
+def _of_sections(sections: Sections, ends: list[int], first: int) -> Iterator[Rounded]:
+    """The quadratics of a run that is cut at joints: each time other tries of the sections that are wrong.
+
+    Args:
+        first: try of all.
+    """
+    given, tolerance, i, j = sections.given, sections.tolerance, ends[0], ends[-1]
+    stored, samples, tries = given.stored, given.joints.samples, np.full(len(ends) - 1, first)
+    ring, near = is_ring(given.cuts, i, j), 0.999 * tolerance
+    for _ in range(ATTEMPTS):
+        q = sections.assembled(ends, tries)
+        relax(q, samples, 0.1 * tolerance, np.inf)
+        if aim(q, tries, ring):
             relax(q, samples, 0.1 * tolerance, np.inf)
-            if aim(q, tries, ring):
-                relax(q, samples, 0.1 * tolerance, np.inf)
-            round_quads(q, samples, tolerance)
-            off = distances(q, given.joints.places, given.outline, given.corners, i, j, near)
-            bad, far, kinks = wrong_quads(
-                q, off, near, given.way, given.line, given.joints.corner, given.mixes, i, j, ring
-            )  # fmt: skip
-            if ring:
-                q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
-            again = bool(bad.any()) and next_tries(q, bad, stored.known, tries)
-            rank = kinks + (far / tolerance if far <= tolerance else 1e3 * far)
-            size = len(bad) + 1 + int(np.count_nonzero(~q.implied[1:-1]))
-            good = not bad.any() and not (done and size >= count)
-            if good or (not stored.known and rank < least and not done and (cut < 2 or far <= tolerance)):
-                least, best, reached, done, count = rank, q, far, done or good, size - int(q.implied[0])
-            if not again:
-                break
-    if best is not None and (not stored.known or count < own):
-        return (*points_of(best.c, best.node, best.implied), reached)
-    return (*points_of(stored.control[:, i:j], stored.node[:, i : j + 1], stored.implied[i:j]), stored.drift)
+        round_quads(q, samples, tolerance)
+        bounds = distances(q, given.joints.places, given.outline, given.corners, i, j, near)
+        far, beyond = max(0.0, *bounds.tolist()), ~(bounds <= near)
+        bad, kinks = wrong_quads(q, beyond, given.way, given.line, given.joints.corner, given.mixes, i, j, ring)
+        if ring:
+            q.implied[0] = (np.abs(q.c[:, 0] + q.c[:, -1] - 2 * q.node[:, 0]) < 1e-6).all()
+        if not bad.any():
+            yield Rounded(q.c, q.node, q.implied, far, (0, 0.0, len(bad) + int(np.count_nonzero(~q.implied[:-1]))))
+            return
+        if not stored.known:  # or else what is stored is better
+            miss = far / tolerance if far <= tolerance else 1e3 * far
+            yield Rounded(q.c, q.node, q.implied, far, (1, kinks + miss, 0))
+        if not next_tries(q, bad, stored.known, tries):
+            return
 
 
 def points_of(c: FloatArray, node: FloatArray, implied: BoolArray) -> tuple[FloatArray, BoolArray]:

@@ -42,21 +42,21 @@ def distances(
 
 @compiled
 def wrong_quads(
-    q: Quads, far: FloatArray, near: float, way: FloatArray, line: BoolArray, corner: BoolArray, mixes: FloatArray,
-    i: int, j: int, ring: bool,
-) -> tuple[BoolArray, float, int]:  # fmt: skip
-    """(R,) which quadratics are too far from the source, off the grid, or turn where they may not; the largest
-    distance; and the number of new kinks.
+    q: Quads, far: BoolArray, way: FloatArray, line: BoolArray, corner: BoolArray, mixes: FloatArray, i: int, j: int,
+    ring: bool,
+) -> tuple[BoolArray, int]:  # fmt: skip
+    """(R,) which quadratics are too far from the source, off the grid, or turn where they may not; and the number of
+    new kinks.
 
     Args:
-        far: (R,) of :func:`distances`; ``near``: how far they may be.
+        far: (R,) those that are too far.
         way, line, mixes: see :class:`.fit.outlines.Given`. corner: (m + 1,) joints that are corners. i, j: between
             which joints the quadratics are. ring: whether these are one.
     """
     K, R, m, kinks = q.c.shape[0], q.c.shape[1], len(line), 0
-    worst, bad, legs = 0.0, np.zeros(R, np.bool_), np.zeros((2, K, R + 1, 2))  # what arrives at nodes, and leaves them
+    bad, legs = np.zeros(R, np.bool_), np.zeros((2, K, R + 1, 2))  # what arrives at nodes, and leaves them
     for s in range(R):
-        none, none_there, off = True, True, False
+        none, none_there, off = True, True, far[s]
         for w in range(K):
             for axis in range(2):
                 at = q.c[w, s, axis]
@@ -65,7 +65,6 @@ def wrong_quads(
                 off = off or abs(at - np.rint(at)) > 1e-6
         # A control point on a node has no leg there whose turn is seen below.
         kinks += 0 if q.held[s] else int(none) + int(none_there)
-        worst, off = max(worst, far[s]), off or not far[s] <= near
         bad[s] = off or (not q.held[s] and (none or none_there))
     for s in range(1, R):
         if not q.implied[s] and not (q.held[s] and q.held[s - 1]):
@@ -92,4 +91,4 @@ def wrong_quads(
                 worse = worse or is_kink(q, s, turn, length(x, y))
         kinks += int(worse)
         bad[s - end] = bad[s - end] or off or worse
-    return bad, worst, kinks
+    return bad, kinks

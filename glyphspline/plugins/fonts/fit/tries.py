@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -14,14 +14,32 @@ from .lattice import round_run
 from .nodes import SEEN, chosen_nodes
 from .run_source import Stretch
 
-SHARES = (0.95, 0.8, 0.5, 0.2, 0.2, 0.0, 0.0)
-"""Of the tolerance: how near a cubic is to be before it is moved and rounded, on each try of its stretch. With 0 it is
-of one segment."""
 
-EASE = (1.0, 0.2, 0.1, 0.03, 0.0, 0.0, 0.0)
-"""Weight of the curvatures at its ends, likewise."""
+class Try(NamedTuple):
+    """What a cubic is to be on a try of its stretch.
 
-KEPT = len(SHARES) - 2
+    Attributes:
+        share: of the tolerance: how near before it is moved and rounded. With 0 it is of one segment.
+        ease: weight of the curvatures at its ends.
+    """
+
+    share: float
+    ease: float
+
+
+TRIES = (
+    Try(share=0.95, ease=1.0),
+    Try(share=0.8, ease=0.2),
+    Try(share=0.5, ease=0.1),
+    Try(share=0.2, ease=0.03),
+    Try(share=0.2, ease=0.0),
+    Try(share=0.0, ease=0.0),
+    Try(share=0.0, ease=0.0),
+)
+
+SHARES, EASE = tuple(each.share for each in TRIES), tuple(each.ease for each in TRIES)
+
+KEPT = len(TRIES) - 2
 """Tries after which a stretch stays as the source has it; one of quadratics, which as cubics are not on the grid, is
 tried there once more."""
 
