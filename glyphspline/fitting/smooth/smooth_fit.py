@@ -19,7 +19,7 @@ import numpy as np
 
 from ...curves.pairing import SHARPNESS, pair_stretches
 from ...errors import GlyphsplineError
-from ...interpolation.batch import NONE_HELD
+from ...interpolation.polygon import NONE_HELD
 from ...interpolation.result import BatchedInterpolation, Interpolation, reversed_interpolation, turned
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...outlines.masters import MasterContour
