@@ -154,7 +154,7 @@ def through_polygons(
         vertices, segments = np.split(places, ends[1:-1]), np.diff(contours.offsets).tolist()
         anchors = np.concatenate([_anchors(*each) for each in zip(vertices, arcs, segments, strict=True)])
         distances = pair_stretches(
-            written, ends, all_cubics(contours), contours.offsets, anchors, ends + np.arange(len(ends)),
+            (written, ends), (all_cubics(contours), contours.offsets), (anchors, ends + np.arange(len(ends))),
             SHARPNESS * tolerance, tolerance,
         )  # fmt: skip
         bounds, gaps = (np.maximum.reduceat(values, ends[:-1]).tolist() for values in distances)

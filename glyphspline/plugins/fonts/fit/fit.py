@@ -157,8 +157,8 @@ def _fitted(
     if len(sources) > 1:
         arcs, sharpness, gaps = np.concatenate(list(map(runs_of, inner, anchors))), 0.0, np.zeros(len(degrees))
     pair_instances(
-        V, mixed(corners, written), offsets, mixed(corners, cubics), source.offsets, np.concatenate(anchors), ends,
-        arcs, sharpness, tolerance, bounds, gaps,
+        V, (mixed(corners, written), offsets), (mixed(corners, cubics), source.offsets),
+        (np.concatenate(anchors), ends), arcs, sharpness, tolerance, bounds, gaps,
     )  # fmt: skip
     if len(sources) > 1:
         gaps[:] = np.nan
