@@ -70,7 +70,7 @@ def mend(
     from ...readers import Font, open_source
     from ...readers.ufo import EditableSource
     from ...runs.schedule import workers
-    from .job import mend_source
+    from .job import Asked, mend_source
 
     if (out is not None) + spec.is_back + dry_run != 1:
         stop("give one of --in-place, --layer, --out and --dry-run")
@@ -78,8 +78,8 @@ def mend(
         raise OptionError("--out takes no two sources of one name")
     if report.html is not None and len(sources) > 1:
         raise OptionError("--html draws one source")
-    limits = thresholds_of(options.thresholds, None)
     kinds = MENDED if options.kinds == "all" else opt.items_of(options.kinds)
+    asked = Asked(kinds, options.tolerance, thresholds_of(options.thresholds, None))
     found: list[MendedSource] = []
     undone = False
     with workers(run.processes, kinds=["mending"], expected=1, count=len(sources)) as pool:
@@ -89,13 +89,12 @@ def mend(
                 stop(f"{path}: only UFOs, designspaces, Glyphs files and fonts are mended")
             names: Sequence[str] = source.glyph_names
             if subset.is_given:
-                names = asked = chosen(source, subset, run.quiet, str(path))
-                undone |= bool(asked.missing)
+                names = picked = chosen(source, subset, run.quiet, str(path))
+                undone |= bool(picked.missing)
             copy = None if out is None else copy_of(source, out)
             with progress(run.quiet) as observer:
                 found.append(mend_source(
-                    source, names, kinds=kinds, tolerance=options.tolerance, thresholds=limits, copy=copy,
-                    layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
+                    source, names, asked, copy=copy, layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
                 ))  # fmt: skip
     if report.html is not None:
         from .page import mending_page
