@@ -140,7 +140,7 @@ class MendedSource:
 def mend_source(
     source: EditableSource | Font,
     names: Sequence[str],
-    asked: Asked = Asked(),
+    asked: Asked,
     *,
     copy: Path | None = None,
     layer: str | None = None,
