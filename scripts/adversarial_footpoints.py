@@ -40,11 +40,10 @@ from glyphspline.interpolation.kernels.passes import (
     SCRATCH,
     WHOLE,
     X,
-    guard_for,
     one_pass,
     set_weights,
 )  # fmt: skip
-from glyphspline.interpolation.kernels.search import settle
+from glyphspline.interpolation.kernels.search import Curve, Room, settle
 from glyphspline.interpolation.method import TIE_DISTANCE
 from glyphspline.types import FloatArray, IntArray
 
@@ -113,7 +112,7 @@ def answer_pieces(c: FloatArray, reach: FloatArray, found: FloatArray) -> None:
     work = np.empty(WORK)
     for k in range(c.shape[0]):
         low, high, start, centre = reach[k, 0], reach[k, 1], reach[k, 2], reach[k, 3]
-        x, _, certified = search_piece(c[k], c.shape[2] - 1, 0.0, low, high, centre, start, np.inf, TIED, work)
+        x, _, certified = search_piece(c[k], c.shape[2] - 1, low, high, centre, start, np.inf, TIED, work)
         found[k, 0], found[k, 1] = x, certified
         found[k, 2] = distance_at(c[k], x) - sampled_distance(c[k], low, high)
 
@@ -129,10 +128,10 @@ def answer_passes(
         p: (n, 2) vertices; reach: (n, 4) interval about the middle knot, first parameter, not used.
         c: (n, 2, 2, 4) coefficients of the pieces to the left and to the right, about the knot, p as the origin.
     """
-    size, guard = 2 * PAD + WHOLE, guard_for(2)
+    size = 2 * PAD + WHOLE
     steps, controls, following, vertices = np.ones(size), np.zeros((2, size)), np.zeros((2, size)), np.zeros((2, size))
-    blocks, S, T, work = np.zeros(BLOCK), np.zeros(SCRATCH), np.zeros(2 * AXIS), np.zeros(WORK)
-    a, b, e = np.zeros((4, 2)), np.zeros((2, 4)), np.zeros(2)
+    blocks, S, T, curve = np.zeros(BLOCK), np.zeros(SCRATCH), np.zeros(2 * AXIS), Curve(controls, vertices, steps)
+    room = Room(np.zeros((4, 2)), np.zeros((2, 4)), np.zeros(2), np.zeros(WORK))
     for k in range(P.shape[0]):
         for i in range(6):
             steps[PAD - 3 + i] = h[k, i]
@@ -143,8 +142,8 @@ def answer_passes(
         set_weights(steps, PAD, PAD + 1, blocks)
         blocks[LOW], blocks[HIGH], blocks[X] = reach[k, 0], reach[k, 1], reach[k, 2]
         lost = 0
-        if one_pass(controls, following, vertices, blocks, S, T, PAD, PAD + 1, guard)[1] > 0:
-            lost = settle(controls, following, vertices, steps, blocks, PAD, PAD + 1, False, guard, a, b, e, work)[2]
+        if one_pass(controls, following, vertices, blocks, S, T, PAD, PAD + 1)[1] > 0:
+            lost = settle(curve, following, blocks, PAD, PAD + 1, False, room)[2]
         x, nearest = blocks[X], np.inf
         found[k, 0], found[k, 1] = x, 1.0 if lost == 0 else 0.0
         if reach[k, 0] <= min(0.0, reach[k, 1]):

@@ -19,7 +19,7 @@ import numpy as np
 import glyphspline as gs
 from glyphspline.outlines.flaws.kinds import THRESHOLDS
 from glyphspline.plugins.masters.designspace import Designspace
-from glyphspline.plugins.mending.job import mend_source
+from glyphspline.plugins.mending.job import Asked, mend_source
 from glyphspline.plugins.mending.state import Change, State
 from glyphspline.readers import Font, open_source
 from glyphspline.readers.ufo import Ufo
@@ -55,7 +55,7 @@ def of_source(
     names = [names[k] for k in rng.permutation(len(names))[:most]]
     em = source.outline(names[0]).metrics.units_per_em / 1000
     before = time.process_time()
-    found = mend_source(source, names, tolerance=tolerance * em, dry=True)
+    found = mend_source(source, names, Asked(tolerance=tolerance * em), dry=True)
     spent = time.process_time() - before
     new = points = beyond = 0
     for old, now in found.drawn.values():

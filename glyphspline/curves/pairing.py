@@ -19,6 +19,8 @@ to every bound.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..compiled import compiled, inlined
@@ -37,17 +39,46 @@ DEEPEST, MOST_HALVINGS = 14, 5_000
 """Maximum subdivision depth; pairs still above the limit there count as too far apart. Halvings of one span, after
 which what is left counts as too far apart: a wrong pairing would take seconds."""
 
+Parts = tuple[FloatArray, IntArray]
+"""Rows of all contours end to end, and the offsets at which contours begin in them."""
+
+
+class Room(NamedTuple):
+    """Scratch for V instances, and ``found``: of the sections so far their bound, without rounding; the largest
+    distance seen between paired points; and its place on the other chain."""
+
+    V: int
+    work: FloatArray
+    marks: FloatArray
+    found: FloatArray
+
+
+class Demand(NamedTuple):
+    """How sharp a bound is to be.
+
+    Attributes:
+        arc: empty, or (4,); see :func:`pair_instances`.
+        coarse: search the segment for the points nearest to the other's joints; or else begin from a proportional
+            guess, and halve every pair once, so that a gap is seen between its ends; of an arc, across it. Coarsely, no
+            gap is seen of an arc, and nothing is refined once a pair is beyond ``enough``.
+        enough: bounds up to this are not refined; nor are bounds within ``sharpness`` of a larger gap already seen.
+    """
+
+    arc: FloatArray
+    coarse: bool
+    enough: float
+    sharpness: float
+
 
 def pair_stretches(
-    results: FloatArray, result_offsets: IntArray, sources: FloatArray, source_offsets: IntArray, anchors: FloatArray,
-    anchor_offsets: IntArray, sharpness: float, limit: float = 0.0,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    results: Parts, sources: Parts, anchors: Parts, sharpness: float, limit: float = 0.0
+) -> tuple[FloatArray, FloatArray]:
     """Bound the distance of contours from their sources between each anchor and the next.
 
     Args:
-        results: (r, 4, 2) closed contours end to end, with offsets. sources: (m, 4, 2), likewise.
+        results: (r, 4, 2) closed contours. sources: (m, 4, 2), likewise.
         anchors: (a, 2) *places* (segment + local parameter, counted on past the last segment) of the result and of the
-            source that are taken to belong together, with offsets. Of a contour neither column decreases; the last row
+            source that are taken to belong together. Of a contour neither column decreases; the last row
             is the first one a lap (r, m) later, and the first one lies in the first lap.
         sharpness: halve sections until the bound exceeds the gaps seen by no more than this.
         limit: where the bound is above it, pair again with the roles exchanged, and take the better of the two.
@@ -55,37 +86,34 @@ def pair_stretches(
     Returns:
         (a - C,) certified bounds, and the largest distances seen between paired points.
     """
-    bounds, gaps = np.full((2, len(anchors) - len(anchor_offsets) + 1), np.nan)
-    pair_instances(
-        1, np.ascontiguousarray(results), result_offsets, np.ascontiguousarray(sources), source_offsets,
-        np.ascontiguousarray(anchors), anchor_offsets, np.empty((0, 4)), sharpness, limit, bounds, gaps,
-    )  # fmt: skip
+    bounds, gaps = np.full((2, len(anchors[0]) - len(anchors[1]) + 1), np.nan)
+    one, other, pairs = ((np.ascontiguousarray(rows), offsets) for rows, offsets in (results, sources, anchors))
+    pair_instances(1, one, other, pairs, np.empty((0, 4)), sharpness, limit, bounds, gaps)
     return bounds, gaps
 
 
 @compiled
 def pair_instances(
-    V: int, results: FloatArray, result_offsets: IntArray, sources: FloatArray, source_offsets: IntArray,
-    anchors: FloatArray, anchor_offsets: IntArray, arcs: FloatArray, sharpness: float, limit: float, bounds: FloatArray,
-    gaps: FloatArray,
+    V: int, results: Parts, sources: Parts, anchors: Parts, arcs: FloatArray, sharpness: float, limit: float,
+    bounds: FloatArray, gaps: FloatArray,
 ) -> None:  # fmt: skip
     """As :func:`pair_stretches`, of V instances, of the stretches whose ``bounds`` are NaN.
 
     A stretch is cut where segments of the one contour end, at the nearest points of the other.
 
     Args:
-        results: (r V, 4, 2) and sources: (m V, 4, 2), with offsets of segments. bounds, gaps: (a - C,).
+        results: (r V, 4, 2), sources: (m V, 4, 2), the offsets those of segments. bounds, gaps: (a - C,).
         arcs: (0, 4); or (a - C, 4) in a design space: first and last place on the result and on the source of the arc
             that a stretch belongs to, infinite for closed curves. A bound beyond the limit is seldom the best to be had
             then, as no stretch of an arc is refined once another one is beyond it, and no gaps are seen.
     """
     slips, no_arc = len(arcs) > 0, np.empty(0)
-    work, marks, found = room_for(V)
-    for c in range(len(anchor_offsets) - 1):
-        result = results[V * result_offsets[c] : V * result_offsets[c + 1]]
-        source = sources[V * source_offsets[c] : V * source_offsets[c + 1]]
+    room, (places, ends) = room_for(V), anchors
+    found = room.found
+    for c in range(len(ends) - 1):
+        result, source = part(V, results, c), part(V, sources, c)
         rounding, lost = ROUNDING * max(extent(result), extent(source)), np.nan
-        for k in range(anchor_offsets[c], anchor_offsets[c + 1] - 1):
+        for k in range(ends[c], ends[c + 1] - 1):
             if not np.isnan(bounds[k - c]):
                 continue
             bounds[k - c], gaps[k - c] = np.inf, 0.0
@@ -93,10 +121,11 @@ def pair_instances(
             if slips:
                 arc = arcs[k - c]
                 enough = np.inf if arc[0] == lost else limit
+            demand = Demand(arc, True, enough, sharpness)
             for exchanged in range(1 if slips else 2):
                 one, other = (source, result) if exchanged else (result, source)
-                x, x_end = anchors[k, exchanged], anchors[k + 1, exchanged]
-                y, y_end = anchors[k, 1 - exchanged], anchors[k + 1, 1 - exchanged]
+                x, x_end = places[k, exchanged], places[k + 1, exchanged]
+                y, y_end = places[k, 1 - exchanged], places[k + 1, 1 - exchanged]
                 found[:] = 0.0
                 last = False
                 while not last:
@@ -106,9 +135,7 @@ def pair_instances(
                     if not last:
                         cut = i + 1.0
                         partner = search_place(V, other, y, y_end, one, i % (len(one) // V), 3)
-                    pair_span(
-                        V, one, i, x - i, cut - i, other, y, partner, arc, True, enough, sharpness, work, marks, found
-                    )
+                    pair_span(room, one, (i, x - i, cut - i), other, (y, partner), demand)
                     x, y = cut, partner
                 if found[0] + rounding < bounds[k - c]:
                     bounds[k - c], gaps[k - c] = found[0] + rounding, found[1]
@@ -119,31 +146,32 @@ def pair_instances(
 
 
 @inlined
-def room_for(V: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """The arrays ``work``, ``marks`` and ``found`` of :func:`pair_span`."""
-    return np.empty((2, (DEEPEST + 2 + SCRATCH) * V, 4, 2)), np.empty((DEEPEST + 2, 5)), np.zeros(3)
+def part(V: int, parts: Parts, c: int) -> FloatArray:
+    """The rows of contour c, in V instances."""
+    rows, offsets = parts
+    return rows[V * offsets[c] : V * offsets[c + 1]]
+
+
+@inlined
+def room_for(V: int) -> Room:
+    """Room for V instances in which nothing is found yet."""
+    return Room(V, np.empty((2, (DEEPEST + 2 + SCRATCH) * V, 4, 2)), np.empty((DEEPEST + 2, 5)), np.zeros(3))
 
 
 @compiled
 def pair_span(
-    V: int, chain: FloatArray, i: int, x: float, x_end: float, other: FloatArray, y: float, y_end: float,
-    arc: FloatArray, coarse: bool, enough: float, sharpness: float, work: FloatArray, marks: FloatArray,
-    found: FloatArray,
+    room: Room, chain: FloatArray, span: tuple[int, float, float], other: FloatArray, stretch: tuple[float, float],
+    demand: Demand,
 ) -> None:  # fmt: skip
-    """Distance of a section of one segment from a stretch of another chain.
+    """Distance of a section of one segment from a stretch of another chain, in V instances.
 
     Args:
-        chain: (n V, 4, 2); segment i, counted on past the last, is measured from parameter x to x_end.
-        other: (m V, 4, 2); y, y_end: places on it.
-        arc: empty, or (4,); see :func:`pair_instances`.
-        coarse: search the segment for the points nearest to the other's joints; or else begin from a proportional
-            guess, and halve every pair once, so that a gap is seen between its ends; of an arc, across it. Coarsely, no
-            gap is seen of an arc, and nothing is refined once a pair is beyond ``enough``.
-        enough: bounds up to this are not refined; nor are bounds within ``sharpness`` of a larger gap already seen.
-        work, marks: of :func:`room_for`.
-        found: the bound, without rounding; the largest distance seen between paired points; and its place on the
-            other. Given are those of earlier sections; smaller bounds are not refined.
+        room: has what earlier sections found; smaller bounds are not refined.
+        chain: (n V, 4, 2). span: a segment, counted on past the last, and parameters x and x_end to measure between.
+        other: (m V, 4, 2). stretch: places y and y_end on it.
     """
+    (V, work, marks, found), (i, x, x_end), (y, y_end) = room, span, stretch
+    arc, coarse, enough, sharpness = demand
     j, m, slips, least = i % (len(chain) // V), len(other) // V, len(arc) > 0, 0 if coarse else 1
     bound, gap, where = found[0], found[1], found[2]
     last, halvings = False, 0

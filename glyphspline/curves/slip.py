@@ -39,7 +39,9 @@ FLAT = 1e-9
 """Least extent of a derivative along a chord, as a share of its length, that counts as positive."""
 
 SCRATCH = 3
-"""Stacks (V, 4, 2) that :func:`slip_bound` works in."""
+"""Stacks (V, 4, 2) that :func:`slip_bound` works in: the differences of the sections, and two for :func:`_follow`."""
+
+Vector = tuple[float, float]
 
 
 @compiled
@@ -60,10 +62,9 @@ def slip_bound(
     size = length(ex, ey)
     if size <= 0.0:
         return np.inf
-    ex, ey = ex / size, ey / size
-    reach = np.zeros(
-        (3, V)
-    )  # how far A's points are behind B's, and before them, in each instance; and as far as can be
+    e = ex, ey = ex / size, ey / size
+    # How far A's points are behind B's, and before them, in each instance; and as far as can be.
+    reach = np.zeros((3, V))
     reach[2] = np.inf
     for v in range(V):
         for k in range(4):
@@ -71,17 +72,17 @@ def slip_bound(
             ahead = ex * D[v, k, 0] + ey * D[v, k, 1]
             reach[0, v], reach[1, v] = max(reach[0, v], -ahead), max(reach[1, v], ahead)
     slip, inside = np.zeros((2, 3)), np.empty((0, 4, 2))
-    if not (_add_part(A, D, ex, ey, inside, slip[0], enough) and _add_part(B, D, ex, ey, inside, slip[1], enough)):
+    if not (_add_part(A, D, e, inside, slip[0], enough) and _add_part(B, D, e, inside, slip[1], enough)):
         return np.inf
     for side in range(2):
         x, y, x_end, y_end = places[side], places[2 + side], arc[side], arc[2 + side]
-        good, ended = _follow(source, D, side, y, y_end, reach[side], ex, ey, slip[1], enough, scratch)
+        good, ended = _follow(source, side, y, y_end, reach[side], e, slip[1], enough, scratch)
         if not good:
             return np.inf
         far = reach[2 if ended else 1 - side]
-        good, also = _follow(result, D, side, x, x_end, far, ex, ey, slip[0], enough, scratch)
+        good, also = _follow(result, side, x, x_end, far, e, slip[0], enough, scratch)
         if good and also and not ended:
-            good, _ = _follow(source, D, side, y, y_end, reach[2], ex, ey, slip[1], enough, scratch)
+            good, _ = _follow(source, side, y, y_end, reach[2], e, slip[1], enough, scratch)
         if not good:
             return np.inf
     return max(_one_way(slip[0], V), _one_way(slip[1], V))
@@ -96,16 +97,14 @@ def _one_way(slip: FloatArray, V: int) -> float:
 
 
 @compiled
-def _add_part(
-    b: FloatArray, D: FloatArray, ex: float, ey: float, start: FloatArray, slip: FloatArray, enough: float
-) -> bool:
+def _add_part(b: FloatArray, D: FloatArray, e: Vector, start: FloatArray, slip: FloatArray, enough: float) -> bool:
     """Take a part (V, 4, 2) of the chain into the largest q_uu and q_uv, and quotient of two instances' e·h; False
     unless all e·h are positive and the slip bound is still small ``enough``: more parts never make it smaller.
 
     Args:
         start: (V, 4, 2) the first points are those where the section ends; (0, 4, 2) in the section itself.
     """
-    V, way = len(b), np.empty((len(b), 2))
+    V, way, (ex, ey) = len(b), np.empty((len(b), 2)), e
     for i in range(3):
         least, most_ahead = np.inf, 0.0
         for u in range(V):
@@ -132,8 +131,8 @@ def _add_part(
 
 @compiled
 def _follow(
-    chain: FloatArray, D: FloatArray, side: int, first: float, last: float, reach: FloatArray, ex: float, ey: float,
-    slip: FloatArray, enough: float, scratch: FloatArray,
+    chain: FloatArray, side: int, first: float, last: float, reach: FloatArray, e: Vector, slip: FloatArray,
+    enough: float, scratch: FloatArray,
 ) -> tuple[bool, bool]:  # fmt: skip
     """Take in what a chain (m V, 4, 2) has beyond a place, until it extends by ``reach`` (V,) or its arc ends.
 
@@ -143,8 +142,8 @@ def _follow(
     Returns:
         Whether the chain gets that far along e, with a slip bound that is small enough, and whether the arc ended.
     """
-    V = len(D)
-    m, part, start = len(chain) // V, scratch[V : 2 * V], scratch[2 * V :]
+    V, (ex, ey) = len(reach), e
+    D, part, start, m = scratch[:V], scratch[V : 2 * V], scratch[2 * V :], len(chain) // V
     near, far = (0, 3) if side else (3, 0)
     at = first
     if reach.max() <= 0.0:
@@ -168,7 +167,7 @@ def _follow(
                 for k in range(2):
                     one, other = part[v, k, c], part[v, 3 - k, c]
                     part[v, k, c], part[v, 3 - k, c] = 2 * start[v, 0, c] - other, 2 * start[v, 0, c] - one
-        if not _add_part(part, D, ex, ey, start, slip, enough):
+        if not _add_part(part, D, e, start, slip, enough):
             return False, False
         if there:
             return True, False

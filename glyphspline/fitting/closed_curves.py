@@ -13,10 +13,9 @@ from ..curves.pairing import SHARPNESS, pair_stretches
 from ..curves.spline_beziers import spline_beziers
 from ..errors import GlyphsplineError
 from ..interpolation.api import interpolate_batch
-from ..interpolation.batch import NONE_HELD
 from ..interpolation.kernels.driver import distance
 from ..interpolation.method import Fallback, Method
-from ..interpolation.polygon import explain
+from ..interpolation.polygon import NONE_HELD, explain
 from ..interpolation.result import BatchedInterpolation, Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ..outlines.places import sampled
@@ -155,7 +154,7 @@ def through_polygons(
         vertices, segments = np.split(places, ends[1:-1]), np.diff(contours.offsets).tolist()
         anchors = np.concatenate([_anchors(*each) for each in zip(vertices, arcs, segments, strict=True)])
         distances = pair_stretches(
-            written, ends, all_cubics(contours), contours.offsets, anchors, ends + np.arange(len(ends)),
+            (written, ends), (all_cubics(contours), contours.offsets), (anchors, ends + np.arange(len(ends))),
             SHARPNESS * tolerance, tolerance,
         )  # fmt: skip
         bounds, gaps = (np.maximum.reduceat(values, ends[:-1]).tolist() for values in distances)

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike
 
 from ..errors import OptionError, PolygonError, require_choice
 from ..types import BoolArray, FloatArray, IntArray
-from .batch import NONE_HELD, run_batch
+from .batch import run_batch
 from .method import Fallback, Method, Parametrisation, Tangents, method_of
-from .polygon import as_points, as_tangents, explain
+from .polygon import NO_KNOTS, NO_TANGENTS, NONE_HELD, Polygons, as_points, as_tangents, explain
 from .result import BatchedInterpolation, Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
@@ -286,4 +286,9 @@ def interpolate_batch(
         tolerances = np.full(count, np.nan if method.residual_tolerance is None else method.residual_tolerance)
     else:
         tolerances = residual_tolerances.copy()
-    return run_batch(points, offsets, method, peak_shares, tolerances, knots, end_tangents, threads, held)
+    tangents = NO_TANGENTS if end_tangents is None else end_tangents
+    if not method.closed and end_tangents is None:
+        tangents = np.full((count, 2, points.shape[1]), np.nan)
+    own_knots = NO_KNOTS if knots is None else knots
+    polygons = Polygons(points, offsets, own_knots, tangents, held, peak_shares, tolerances)
+    return run_batch(polygons, method, threads)

@@ -11,60 +11,27 @@ from typing import Any
 
 import numpy as np
 
-from ..types import BoolArray, FloatArray, IntArray
-from .method import CHORD_EXPONENT, Method
-from .plain import iterate, prepare
+from ..types import IntArray
+from .method import Method
+from .plain import interpolate
+from .polygon import Polygons
 from .result import BatchedInterpolation, Found
-
-GIVEN = -1.0
-"""In place of a chord exponent: knots are given."""
 
 LEAST_VERTICES = 1024
 """Minimum work of a thread at a time, some 0.3 ms: long compared with the cost of the exchange."""
 
-NO_TANGENTS = np.empty((0, 2, 2))
-NO_KNOTS = np.empty(0)
-NONE_HELD = np.empty(0, dtype=np.bool_)
 
-
-def run_batch(
-    points: FloatArray,
-    offsets: IntArray,
-    method: Method,
-    peak_shares: FloatArray,
-    tolerances: FloatArray,
-    knots: FloatArray | None,
-    end_tangents: FloatArray | None,
-    threads: int | None = 1,
-    held: BoolArray = NONE_HELD,
-) -> BatchedInterpolation:
-    """Run the driver over concatenated polygons; arguments as :func:`.api.interpolate_batch` has them.
-
-    Args:
-        method: of degree 3, without diagnostics. peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
-        tolerances: (K,) residual tolerances; NaN is replaced by the default one.
-    """
-    (total, d), count, closed = points.shape, len(offsets) - 1, method.closed
-    tangents = NO_TANGENTS
-    if not closed:
-        tangents = np.full((count, 2, d), np.nan) if end_tangents is None else end_tangents
-    exponent = GIVEN if method.knots is None else CHORD_EXPONENT[method.knots]
-    found = Found.empty(total, count, closed, d)
+def run_batch(polygons: Polygons, method: Method, threads: int | None = 1) -> BatchedInterpolation:
+    """Run the driver over polygons, by a method of degree 3, without diagnostics."""
+    (total, d), offsets = polygons.points.shape, polygons.offsets
+    found = Found.empty(total, len(offsets) - 1, method.closed, d)
 
     def work(part: tuple[int, int]) -> Any:
-        prepare(
-            *part, points, offsets, NO_KNOTS if knots is None else knots, tangents, held, peak_shares, tolerances,
-            closed, method.variant, float(method.margin), exponent, found.knots, found.bounds, found.kept, found.whole,
-            found.rates,
-        )  # fmt: skip
-        return iterate(
-            *part, points, offsets, tangents, held, tolerances, closed, method.variant, method.max_iterations,
-            found.knots, found.controls, found.parameters, found.bounds, found.kept, found.whole,
-        )  # fmt: skip
+        return interpolate(*part, polygons, method.rule, found)
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(offsets, closed, tolerances, joined, found)
+    return BatchedInterpolation(offsets, method.closed, polygons.tolerances, joined, found)
 
 
 def _threads(threads: int | None) -> int:

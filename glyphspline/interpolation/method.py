@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
 
 from ..curves import DEGREES
 from ..errors import OptionError, is_number, is_positive, is_whole, require, require_choice
@@ -17,6 +17,9 @@ Fallback: TypeAlias = Literal["knot", "peak"]
 Tangents: TypeAlias = "tuple[ArrayLike | None, ArrayLike | None]"
 
 CHORD_EXPONENT: dict[str, float] = {"chord": 1.0, "centripetal": 0.5, "uniform": 0.0}
+
+GIVEN = -1.0
+"""In place of a chord exponent: knots are given."""
 
 MOST_ITERATIONS = 10**9
 """Upper bound of ``max_iterations``."""
@@ -43,6 +46,16 @@ TIE = 1e-12
 
 TIE_DISTANCE = 1e-14
 """Distances below this share of the extent count as 0, and as a tie: their last bits are rounding errors."""
+
+
+class Rule(NamedTuple):
+    """What compiled functions read of a :class:`Method`; exponent: of the chord length in the knots, or ``GIVEN``."""
+
+    closed: bool
+    variant: int
+    margin: float
+    exponent: float
+    max_iterations: int
 
 
 @dataclass(frozen=True)
@@ -91,6 +104,12 @@ class Method:
     def peak_share(self) -> float:
         """``PEAK_SHARE`` with ``fallback="peak"``, else 0."""
         return PEAK_SHARE if self.fallback == "peak" else 0.0
+
+    @cached_property
+    def rule(self) -> Rule:
+        """The method in numbers."""
+        exponent = GIVEN if self.knots is None else CHORD_EXPONENT[self.knots]
+        return Rule(self.closed, self.variant, float(self.margin), exponent, self.max_iterations)
 
     def tolerance_for(self, extent: float) -> float:
         """The residual tolerance for a polygon of this extent."""

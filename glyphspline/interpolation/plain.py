@@ -40,43 +40,47 @@ from .kernels.passes import (
     SETTLED_STEP,
     WILD,
     along,
-    expanded,
+    at_knot,
     guard_for,
     holds,
     rises,
 )  # fmt: skip
-from .kernels.search import FINE, GIVEN_UP, look_again
-from .method import RELATIVE_TOLERANCE
-from .polygon import LARGEST, SAME_VERTEX, SMALLEST
+from .kernels.search import FINE, GIVEN_UP, Curve, Room, look_again
+from .method import RELATIVE_TOLERANCE, Rule
+from .polygon import LARGEST, SAME_VERTEX, SMALLEST, Polygons
+from .result import Found
 
 where: Any = np.where  # its types have another result for what may be None
 
 
-@in_numpy(driver.prepare)
-def prepare(
-    k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray,
-    held: BoolArray, peak_shares: FloatArray, tolerances: FloatArray, closed: bool, variant: int, margin: float,
-    exponent: float, knots: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray, rates: FloatArray,
-) -> None:  # fmt: skip
+@in_numpy(driver.interpolate)
+def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> FloatArray:
+    """As :func:`.kernels.driver.interpolate`."""
+    _prepare(k0, k1, polygons, rule, found)
+    return (driver.iterate if rule.variant in (0, 4) else _iterate)(k0, k1, polygons, rule, found)
+
+
+def _prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> None:
     """As :func:`.kernels.driver.prepare`."""
+    offsets, tolerances, kept, closed = polygons.offsets, polygons.tolerances, found.kept, rule.closed
     good: list[int] = []
     for k in range(k0, k1):
         first, last, shift = int(offsets[k]), int(offsets[k + 1]), k if closed else 0
-        u, given = knots[first + shift : last + shift + closed], own_knots[first + shift : last + shift + closed]
-        n, extent = _merge(points[first:last], closed, kept[first:last])
-        whole[k] = (BAD_POLYGON, n, -1, 0, 0, 0)
+        ends = slice(first + shift, last + shift + closed)
+        points, u, given = polygons.points[first:last], found.knots[ends], polygons.knots[ends]
+        n, extent = _merge(points, closed, kept[first:last])
+        found.whole[k] = (BAD_POLYGON, n, -1, 0, 0, 0)
         if n < 0:
             continue
         if np.isnan(tolerances[k]):
             tolerances[k] = RELATIVE_TOLERANCE * extent
         own = kept[first : first + n]
-        fine = _set_knots(points[first:last][own], own, exponent, given, u[: n + closed])
-        whole[k, STATUS] = OK if fine else BAD_KNOTS
+        fine = _set_knots(points[own], own, rule.exponent, given, u[: n + closed])
+        found.whole[k, STATUS] = OK if fine else BAD_KNOTS
         good += [k] if fine else []
     if good:
-        strip = Strip(np.array(good), whole[good, KEPT], closed)
-        h = strip.knot_steps(offsets, knots, np.ones(len(good)))
-        _set_intervals(strip, h, offsets, held, kept, tangents, variant, margin, peak_shares, bounds, whole, rates)
+        strip = Strip(np.array(good), found.whole[good, KEPT], closed)
+        _set_intervals(strip, strip.knot_steps(offsets, found.knots, np.ones(len(good))), polygons, rule, found)
 
 
 def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -170,39 +174,36 @@ class Strip:
         return h
 
 
-def _set_intervals(
-    strip: Strip, h: FloatArray, offsets: IntArray, held: BoolArray, kept: IntArray, tangents: FloatArray, variant: int,
-    margin: float, peak_shares: FloatArray, bounds: FloatArray, whole: IntArray, rates: FloatArray,
-) -> None:  # fmt: skip
+def _set_intervals(strip: Strip, h: FloatArray, polygons: Polygons, rule: Rule, found: Found) -> None:
     """Search intervals of all polygons of a strip, with their fallbacks and rate bounds."""
+    offsets, held, peak_shares, bounds = polygons.offsets, polygons.held, polygons.peak_shares, found.bounds
     rows = offsets[strip.which][strip.owners] + strip.numbers
-    low, high, least, missing = _intervals(h, strip.lanes, variant, margin, peak_shares[strip.which][strip.owners])
-    if not strip.closed and variant > 1:
+    low, high, least, missing = _intervals(h, strip.lanes, rule, peak_shares[strip.which][strip.owners])
+    if not strip.closed and rule.variant > 1:
         for j in np.flatnonzero((strip.numbers < 3) | (strip.numbers > strip.counts[strip.owners] - 4)).tolist():
             q, k = strip.owners[j], strip.which[strip.owners[j]]
             n, origin, natural = int(strip.counts[q]), strip.origins[q], np.zeros(2)
-            set_natural(tangents[k], n, h[origin - PAD :], natural)
+            set_natural(polygons.tangents[k], n, h[origin - PAD :], natural)
             low[j], high[j], least[j], missing[j] = vertex_interval(
-                h, strip.lanes[j], strip.numbers[j], n, False, variant, margin, peak_shares[k], natural, np.empty(4),
-                np.empty(4),
-            )  # fmt: skip
+                h, strip.lanes[j], strip.numbers[j], n, rule, peak_shares[k], natural, np.empty((2, 4))
+            )
     if len(held):
-        still = held[offsets[strip.which][strip.owners] + kept[rows]]
+        still = held[offsets[strip.which][strip.owners] + found.kept[rows]]
         low[still], high[still], least[still], missing[still] = 0.0, 0.0, 1.0, False
     for k, n in zip(strip.which, strip.counts, strict=True):
         bounds[offsets[k] : offsets[k] + n] = 0.0
     bounds[rows, 0], bounds[rows, 1] = low, high
     smallest = np.ones(len(strip.which))
     np.minimum.at(smallest, strip.owners, least)
-    whole[strip.which, FALLBACKS] = np.bincount(strip.owners[missing], minlength=len(strip.which))
-    rates[strip.which] = 2.0 * (1.0 - smallest)
+    found.whole[strip.which, FALLBACKS] = np.bincount(strip.owners[missing], minlength=len(strip.which))
+    found.rates[strip.which] = 2.0 * (1.0 - smallest)
 
 
 def _intervals(
-    h: FloatArray, lanes: IntArray, variant: int, margin: float, peak_shares: FloatArray
+    h: FloatArray, lanes: IntArray, rule: Rule, peak_shares: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
     """As :func:`.kernels.lemma2.vertex_interval` has them, for many vertices of closed curves."""
-    a, b, c, d = h[lanes - 2], h[lanes - 1], h[lanes], h[lanes + 1]
+    a, b, c, d, variant = h[lanes - 2], h[lanes - 1], h[lanes], h[lanes + 1], rule.variant
     missing, zero = np.zeros(len(lanes), dtype=np.bool_), np.zeros(len(lanes))
     if variant == 0:
         return -(a + b), c + d, zero, missing
@@ -220,7 +221,7 @@ def _intervals(
     y = where((square < 0.0) | ((d1 >= 0.0) & (d2 > 0.0)), 1.0, d0 / (d0 - d1 + np.sqrt(square)))
     y = where(d0 <= 0.0, 0.0, y)
     top = value_at(knot, c1, c2, c3, y)
-    low_peak, level = top <= 0.5, np.full(len(lanes), 0.5 + margin)
+    low_peak, level = top <= 0.5, np.full(len(lanes), 0.5 + rule.margin)
     level = where(peak_shares > 0.0, np.minimum(level, peak_shares * top), level)
     alone, outside = top <= level, knot < level
     far = where(c3 >= level, 1.0, _crossings(knot, c1, c2, c3, level, y, where(alone | (c3 >= level), y, 1.0)))
@@ -262,22 +263,12 @@ def _crossings(
     return x
 
 
-@in_numpy(driver.iterate)
-def iterate(
-    k0: int, k1: int, points: FloatArray, offsets: IntArray, tangents: FloatArray, held: BoolArray,
-    tolerances: FloatArray, closed: bool, variant: int, max_iterations: int, knots: FloatArray, controls: FloatArray,
-    parameters: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray,
-) -> FloatArray:  # fmt: skip
+def _iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> FloatArray:
     """As :func:`.kernels.driver.iterate`."""
-    if variant in (0, 4):
-        one_by_one: Any = driver.iterate
-        return one_by_one.py_func(
-            k0, k1, points, offsets, tangents, held, tolerances, closed, variant, max_iterations, knots, controls,
-            parameters, bounds, kept, whole,
-        )  # fmt: skip
+    whole = found.whole
     good = np.arange(k0, k1)[whole[k0:k1, STATUS] == OK]
     residuals: list[list[float]] = [[] for _ in range(k1 - k0)]
-    state = State(good, points, offsets, tangents, held, closed, knots, bounds, kept, whole) if len(good) else None
+    state = State(good, polygons, rule.closed, found) if len(good) else None
     whole[good, ITERATIONS] = -1
     while state:
         squared, searched, uncertified = state.one_pass()
@@ -287,10 +278,10 @@ def iterate(
         whole[which, SEARCHES] += searched
         whole[which, UNCERTIFIED] += uncertified
         whole[which, ITERATIONS] += 1
-        over = (errors < tolerances[which] * state.units) | ~(np.inf > errors)
-        over |= whole[which, ITERATIONS] >= max_iterations
+        over = (errors < polygons.tolerances[which] * state.units) | ~(np.inf > errors)
+        over |= whole[which, ITERATIONS] >= rule.max_iterations
         for q in np.flatnonzero(over).tolist():
-            state.store(q, points, offsets, knots, controls, parameters, bounds, kept)
+            state.store(q, polygons, found)
         if over.all():
             break
         state.go_on(~over)
@@ -308,11 +299,10 @@ class State:
         units, knot_units: (K,) of lengths and of parameters. ends, natural: (K, 4, d), (K, 2) of arcs.
     """
 
-    def __init__(
-        self, which: IntArray, points: FloatArray, offsets: IntArray, tangents: FloatArray, held: BoolArray,
-        closed: bool, knots: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray,
-    ) -> None:  # fmt: skip
-        strip, d, count = Strip(which, whole[which, KEPT], closed), points.shape[1], len(which)
+    def __init__(self, which: IntArray, polygons: Polygons, closed: bool, found: Found) -> None:
+        points, offsets, tangents, held = polygons.points, polygons.offsets, polygons.tangents, polygons.held
+        knots, bounds, kept = found.knots, found.bounds, found.kept
+        strip, d, count = Strip(which, found.whole[which, KEPT], closed), points.shape[1], len(which)
         self.strip, self.guard, self.units, self.knot_units = strip, guard_for(d), np.ones(count), np.ones(count)
         self.p, self.ends, self.natural = np.zeros((d, strip.size)), np.zeros((count, 4, d)), np.zeros((count, 2))
         for j, (k, n, origin) in enumerate(zip(which, strip.counts, strip.origins, strict=True)):
@@ -354,10 +344,8 @@ class State:
         d[:, 1:] = rate[1:] * (P[:, 1:] - P[:, :-1])
         c[:, :-1] = half[:-1] * (d[:, 1:] - d[:, :-1])
         w = c[:, at]
-        e, v, right, left = expanded(
-            x - self.own, d[:, at], d[:, at + 1], c[:, at - 1], w, c[:, at + 1], third[at - 1], third[at], share[at],
-            ahead[at], behind[at],
-        )  # fmt: skip
+        e, v = at_knot(x - self.own, d[:, at], d[:, at + 1], share[at], ahead[at], behind[at])
+        right, left = third[at] * (c[:, at + 1] - w), third[at - 1] * (c[:, at - 1] - w)
         ev, low, high = dot(e, v), self.low, self.high
         forward = (low >= 0.0) | ((high > 0.0) & (ev <= 0.0))
         side, near, far = where(forward, 1.0, -1.0), where(forward, low, -high), where(forward, high, -low)
@@ -387,30 +375,25 @@ class State:
         if fails >= WILD:
             largest[q], counts[1, q] = np.inf, counts[1, q] + 1
             return
-        b, c, e = np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(d)
-        self.x[j], squared, outcome = look_again(
-            self.P, self.p, self.h, i, side, self.x[j], self.low[j], self.high[j], fails, self.guard, b, c, e,
-            np.empty(WORK),
-        )  # fmt: skip
+        curve = Curve(self.P, self.p, self.h)
+        room = Room(np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(d), np.empty(WORK))
+        self.x[j], squared, outcome = look_again(curve, i, side, self.x[j], self.low[j], self.high[j], fails, room)
         largest[q] = max(largest[q], self.free[j] * squared)
         counts[:, q] += [outcome != FINE, outcome == GIVEN_UP]
-        self.moved[:, j] = self.P[:, i] - self.free[j] * e
+        self.moved[:, j] = self.P[:, i] - self.free[j] * room.e
 
-    def store(
-        self, q: int, points: FloatArray, offsets: IntArray, knots: FloatArray, controls: FloatArray,
-        parameters: FloatArray, bounds: FloatArray, kept: IntArray,
-    ) -> None:  # fmt: skip
+    def store(self, q: int, polygons: Polygons, found: Found) -> None:
         """The results of a polygon that is done: see :func:`.kernels.driver.store`."""
         strip, k, n, origin = self.strip, int(self.strip.which[q]), int(self.strip.counts[q]), self.strip.origins[q]
-        first, shift = int(offsets[k]), 0 if strip.closed else 1
-        own, out = points[first:][kept[first:][:n]], controls[first + 2 * k * shift :]
+        first, shift = int(polygons.offsets[k]), 0 if strip.closed else 1
+        own, out = polygons.points[first:][found.kept[first:][:n]], found.controls[first + 2 * k * shift :]
         out[shift : n + shift] = self.P[:, origin : origin + n].T * (1.0 / self.units[q]) + own[0]
         if shift:
             out[0], out[n + 1] = own[0], own[-1]
-        u, x = knots[first + (k if strip.closed else 0) :][:n], np.zeros(n)
+        u, x = found.knots[first + (k if strip.closed else 0) :][:n], np.zeros(n)
         x[shift : n - shift] = self.x[strip.owners == q]
-        parameters[first : first + n] = u + x * (1.0 / self.knot_units[q])
-        bounds[first : first + n] += u[:, None]
+        found.parameters[first : first + n] = u + x * (1.0 / self.knot_units[q])
+        found.bounds[first : first + n] += u[:, None]
 
     def go_on(self, stay: BoolArray) -> None:
         """Move the control points, and leave out all polygons but those (K,) that stay."""

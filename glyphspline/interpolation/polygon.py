@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import reduce
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import PolygonError
-from ..types import FloatArray, IntArray
+from ..types import BoolArray, FloatArray, IntArray
 from .method import CHORD_EXPONENT, Parametrisation, Tangents
 
 SAME_VERTEX = 1e-12
@@ -21,6 +21,32 @@ With a much smaller value, sums of chords in floating point would give them the 
 
 LARGEST, SMALLEST = 1e100, 1e-100
 """Extents beyond which squared distances leave the range of floats."""
+
+NO_TANGENTS = np.empty((0, 2, 2))
+NO_KNOTS = np.empty(0)
+NONE_HELD = np.empty(0, dtype=np.bool_)
+
+
+class Polygons(NamedTuple):
+    """K polygons of N vertices in R^d in shared arrays.
+
+    Attributes:
+        points: (N, d) end to end. offsets: (K + 1,) part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
+        knots: () or all polygons' own parameters end to end, n + 1 each if closed, n if open.
+        tangents: (K, 2, d) end tangents of open arcs, NaN for natural ends; (0, 2, d) if closed.
+        held: (N,) whether a vertex of a closed polygon is held: its control point stays at it, and the curve need not
+            pass through it; () where none is.
+        peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
+        tolerances: (K,) residual tolerances; NaN, until the driver writes the one of ``RELATIVE_TOLERANCE`` there.
+    """
+
+    points: FloatArray
+    offsets: IntArray
+    knots: FloatArray
+    tangents: FloatArray
+    held: BoolArray
+    peak_shares: FloatArray
+    tolerances: FloatArray
 
 
 def as_points(points: ArrayLike) -> FloatArray:

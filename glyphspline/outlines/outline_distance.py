@@ -55,6 +55,9 @@ CLOSER = 2e-4
 Miss = tuple[float, float]
 """By how much a place may miss the nearest one: a length, and a share of its distance. The larger one counts."""
 
+Place = tuple[int, float]
+"""A segment, and a parameter on it."""
+
 COLUMNS = 8
 BOUND, SEEN, X, Y, SIDE, CONTOUR, NEAR_X, NEAR_Y = range(COLUMNS)
 """Columns of distances: certified bound; certified distance of a point, as rounding leaves it; the point, of outline
@@ -259,7 +262,7 @@ def distance(old: Chains, new: Chains, least: float, tolerance: float, row: Floa
         for i in range(len(one.cubics)):
             e = ends[first + i]
             bounds[first + i] = section_bound(
-                one.cubics, i, 0.0, 1.0, other, int(e[0]), e[1], int(e[2]), e[3], limit, sections
+                one.cubics, i, 0.0, 1.0, other, (int(e[0]), e[1]), (int(e[2]), e[3]), limit, sections
             )
     halvings, bound = 0, 0.0
     order = ascending(-bounds)
@@ -283,34 +286,35 @@ def distance(old: Chains, new: Chains, least: float, tolerance: float, row: Floa
             halvings += 1
             middle = (low + high) / 2
             x, y, _, _, _, _ = jet(one.cubics, i, middle)
-            s0, z0, s1, z1 = int(marks[top, 2]), marks[top, 3], int(marks[top, 4]), marks[top, 5]
-            s, z, farther = look(other, x, y, s0, z0, misses, places, row)
+            begin, end = (int(marks[top, 2]), marks[top, 3]), (int(marks[top, 4]), marks[top, 5])
+            s, z, farther = look(other, x, y, begin[0], begin[1], misses, places, row)
             if farther:
                 row[SIDE], row[CONTOUR] = side, one.owners[i]
             limit = max(bound, enough(row[SEEN], least, tolerance))
             marks[top, 1], marks[top, 4], marks[top, 5] = middle, s, z
-            marks[top, 6] = section_bound(one.cubics, i, low, middle, other, s0, z0, s, z, limit, sections)
+            marks[top, 6] = section_bound(one.cubics, i, low, middle, other, begin, (s, z), limit, sections)
             top += 1
             marks[top, 0], marks[top, 1], marks[top, 2], marks[top, 3] = middle, high, s, z
-            marks[top, 4], marks[top, 5] = s1, z1
-            marks[top, 6] = section_bound(one.cubics, i, middle, high, other, s, z, s1, z1, limit, sections)
+            marks[top, 4], marks[top, 5] = end
+            marks[top, 6] = section_bound(one.cubics, i, middle, high, other, (s, z), end, limit, sections)
     row[BOUND], row[SEEN] = max(bound, row[SEEN]) + rounding, max(row[SEEN] - rounding, 0.0)
     return ends
 
 
 @compiled
 def section_bound(
-    cubics: FloatArray, i: int, low: float, high: float, other: Chains, s0: int, z0: float, s1: int, z1: float,
-    limit: float, sections: FloatArray,
+    cubics: FloatArray, i: int, low: float, high: float, other: Chains, begin: Place, end: Place, limit: float,
+    sections: FloatArray,
 ) -> float:  # fmt: skip
     """Bound of the distance of the points of a section of a segment from an outline.
 
     Args:
         cubics: (m, 4, 2), of which number i between parameters ``low`` and ``high``.
-        s0, z0, s1, z1: segments of the outline, and parameters, nearest to the section's ends.
+        begin, end: places of the outline nearest to the section's ends.
         limit: bounds up to this are small enough: no smaller one is sought.
         sections: (2, 1, 4, 2) scratch array.
     """
+    (s0, z0), (s1, z1) = begin, end
     cubic, best, n = cubics[i], np.inf, other.offsets[other.owners[s0] + 1] - other.offsets[other.owners[s0]]
     ahead = (s1 - s0) % n
     after, joints = (1, ahead) if 2 * ahead <= n else (0, n - ahead)

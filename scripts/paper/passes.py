@@ -8,10 +8,9 @@ import numpy as np
 
 import glyphspline as gs
 from glyphspline.interpolation.api import interpolate_batch
-from glyphspline.interpolation.batch import NONE_HELD
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.plain import State
-from glyphspline.interpolation.polygon import as_points
+from glyphspline.interpolation.polygon import NO_KNOTS, NONE_HELD, Polygons, as_points
 from glyphspline.interpolation.reference import Run
 from glyphspline.types import FloatArray
 
@@ -34,9 +33,8 @@ class Passes:
         bounds[:n] -= self.knots[:, None]
         tangents = np.full((1, 2, q.shape[1]), np.nan) if pair is None else pair
         with np.errstate(all="ignore"):
-            self.state = State(
-                np.array([0]), q, offsets, tangents, NONE_HELD, closed, found.knots, bounds, found.kept, found.whole
-            )
+            polygons = Polygons(q, offsets, NO_KNOTS, tangents, NONE_HELD, np.zeros(1), batch.tolerances)
+            self.state = State(np.array([0]), polygons, closed, found._replace(bounds=bounds))
         self.first, self.n = int(self.state.strip.origins[0]), n
         self.free = slice(0, n) if closed else slice(1, n - 1)
         self.unit, self.origin = float(self.state.units[0]), q[found.kept[0]]

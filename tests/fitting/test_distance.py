@@ -21,8 +21,8 @@ def true_distance(a: gs.Contour, b: gs.Contour, samples: int = 6000) -> float:
 
 def certified(result: FloatArray, source: FloatArray, anchors: FloatArray, sharpness: float) -> tuple[float, float]:
     """Bound of the distance of two contours, and the largest distance seen."""
-    whole = [np.array([0, len(part)]) for part in (result, source, anchors)]
-    bounds, gaps = pair_stretches(result, whole[0], source, whole[1], anchors, whole[2], sharpness)
+    parts = [(rows, np.array([0, len(rows)])) for rows in (result, source, anchors)]
+    bounds, gaps = pair_stretches(parts[0], parts[1], parts[2], sharpness)
     return float(bounds.max()), float(gaps.max())
 
 

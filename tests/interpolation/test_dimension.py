@@ -108,7 +108,7 @@ def test_a_distance_of_almost_nothing_keeps_its_digits() -> None:
     b[0] = -(0.3 * b[1] + 0.09 * b[2] + 0.027 * b[3]) + 1e-12 * rng.normal(size=30)
     c = np.empty((4, 4))
     reduce(b.copy(), c)
-    y, D, certified = search_piece(c, 3, 0.0, 0.0, 1.0, 0.0, 0.5, np.inf, 1e-28, np.empty(WORK))
+    y, D, certified = search_piece(c, 3, 0.0, 1.0, 0.0, 0.5, np.inf, 1e-28, np.empty(WORK))
     assert certified
     assert y == pytest.approx(0.3, abs=1e-11)
     assert np.sqrt(D) == pytest.approx(np.linalg.norm(y ** np.arange(4) @ b), abs=4e-15)

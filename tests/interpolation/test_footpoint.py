@@ -21,7 +21,7 @@ from tests.polygons import smooth, uniform
 def nearest(coefficients: np.ndarray, low: float, high: float, centre: float) -> tuple[float, float]:
     """The search on one piece from nothing."""
     degree = coefficients.shape[1] - 1
-    y, D, certified = search_piece(coefficients, degree, 0.0, low, high, centre, centre, np.inf, 0.0, np.empty(WORK))
+    y, D, certified = search_piece(coefficients, degree, low, high, centre, centre, np.inf, 0.0, np.empty(WORK))
     assert certified
     return y, D
 
@@ -52,7 +52,7 @@ def test_an_end_beyond_a_flat_stretch_is_found() -> None:
             [7.23251355, -0.731768856, -1.62569386, -0.00154457925],
         ]
     )
-    x, D, certified = search_piece(c, 3, 0.0, 0.0, 1.0, 0.0, 0.385849890658987, np.inf, 1e-28, np.empty(WORK))
+    x, D, certified = search_piece(c, 3, 0.0, 1.0, 0.0, 0.385849890658987, np.inf, 1e-28, np.empty(WORK))
     assert certified
     assert x == 1.0
     assert pytest.approx(np.hypot(*c.sum(axis=1)), rel=1e-14) == np.sqrt(D)
@@ -79,7 +79,7 @@ def test_adversarial_cases_are_within_the_bound(name: str, degree: int) -> None:
 
 def test_a_search_that_gives_up_says_so() -> None:
     """Where the curve is not finite nothing is certified, and the result counts it."""
-    *_, certified = search_piece(np.full((2, 4), np.nan), 3, 0.0, 0.0, 1.0, 0.5, 0.5, np.inf, 0.0, np.empty(WORK))
+    *_, certified = search_piece(np.full((2, 4), np.nan), 3, 0.0, 1.0, 0.5, 0.5, np.inf, 0.0, np.empty(WORK))
     assert not certified
 
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from glyphspline.code_files import kept
 from glyphspline.interpolation.api import interpolate_batch
-from glyphspline.interpolation.batch import NONE_HELD
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import NONE_HELD
 from glyphspline.types import FloatArray
 from tests.polygons import lognormal_chords, near_cusps, polygon, uniform
 

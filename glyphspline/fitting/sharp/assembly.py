@@ -144,8 +144,8 @@ def certify(
     bounds, gaps = np.repeat(known, spans), np.zeros(int(segments[-1]))
     wanted = np.isnan(bounds)
     pair_instances(
-        V, results, offsets, sources, contours.offsets, anchors, offsets + np.arange(len(offsets)), arcs, sharpness,
-        limit, bounds, gaps,
+        V, (results, offsets), (sources, contours.offsets), (anchors, offsets + np.arange(len(offsets))), arcs,
+        sharpness, limit, bounds, gaps,
     )  # fmt: skip
     speed = np.ones(len(wanted), dtype=np.bool_)
     if mixes is not None:

@@ -7,7 +7,7 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...curves.cubics import length
 from ...curves.nearest import near_places
-from ...curves.pairing import pair_span, room_for
+from ...curves.pairing import Demand, pair_span, room_for
 from ...types import BoolArray, FloatArray
 from .cubics import project
 
@@ -212,12 +212,12 @@ def certified(
     """(r,) bounds of the distance of cubics from stretches of the source, in V instances; inf where not finite.
 
     Args:
-        chain: (r V, 4, 2) the cubics. other: (m V, 4, 2) the source. arc: see :func:`...curves.pairing.pair_span`.
+        chain: (r V, 4, 2) the cubics. other: (m V, 4, 2) the source. arc: see :class:`...curves.pairing.Demand`.
         hints: (r + 1,) places of the source near which the cubics begin and end. stays: (r + 1,) where exactly there.
         skip: (r,) which cubics are not measured, and get 0. closed: whether the last end is the first again.
     """
     r, m = len(chain) // V, len(other) // V
-    work, marks, found = room_for(V)
+    room, demand = room_for(V), Demand(arc, True, tolerance, 0.02 * tolerance)
     places, bounds = hints.copy(), np.zeros(r)
     near_places(V, other, hints[:r], chain, stays, False, hints[r - 1] - m, hints[r], places)
     if closed:
@@ -227,10 +227,7 @@ def certified(
     for s in range(r):
         if skip[s]:
             continue
-        found[:] = 0.0
-        pair_span(
-            V, chain, s, 0.0, 1.0, other, places[s], places[s + 1], arc, True, tolerance, 0.02 * tolerance, work,
-            marks, found,
-        )  # fmt: skip
-        bounds[s] = found[0] if np.isfinite(chain[s * V : (s + 1) * V]).all() else np.inf
+        room.found[:] = 0.0
+        pair_span(room, chain, (s, 0.0, 1.0), other, (places[s], places[s + 1]), demand)
+        bounds[s] = room.found[0] if np.isfinite(chain[s * V : (s + 1) * V]).all() else np.inf
     return bounds

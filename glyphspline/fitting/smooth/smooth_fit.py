@@ -19,7 +19,7 @@ import numpy as np
 
 from ...curves.pairing import SHARPNESS, pair_stretches
 from ...errors import GlyphsplineError
-from ...interpolation.batch import NONE_HELD
+from ...interpolation.polygon import NONE_HELD
 from ...interpolation.result import BatchedInterpolation, Interpolation, reversed_interpolation, turned
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...outlines.masters import MasterContour
@@ -354,7 +354,7 @@ class _Search:
             return bound, gap
         # Pairing in both directions is slow and seldom better.
         anchors = np.stack([np.arange(len(ends), dtype=np.float64), ends], axis=1)
-        each = [np.array([0, len(part)]) for part in (written, outline, anchors)]
-        others = pair_stretches(written, each[0], outline, each[1], anchors, each[2], SHARPNESS * tolerance, tolerance)
+        parts = [(rows, np.array([0, len(rows)])) for rows in (written, outline, anchors)]
+        others = pair_stretches(parts[0], parts[1], parts[2], SHARPNESS * tolerance, tolerance)
         other, seen = (float(values.max()) for values in others)
         return (other, seen) if other < bound else (bound, gap)

@@ -15,7 +15,7 @@ from ...arrays import ascending, grown, put
 from ...compiled import compiled
 from ...curves.cubics import extent
 from ...curves.nearest import near_places
-from ...curves.pairing import ROUNDING, pair_span, room_for
+from ...curves.pairing import ROUNDING, Demand, pair_span, room_for
 from ...interpolation.kernels.driver import distance
 from ...outlines.contour_arrays import offsets_of
 from ...types import BoolArray, FloatArray, IntArray
@@ -143,7 +143,8 @@ def measured(
     n, V, arc = len(places), len(contours.cubics) // len(contours.turns), np.empty(0)
     if V > 1:
         arc = np.array([-np.inf, np.inf, -np.inf, np.inf])
-    work, marks, found = room_for(V)
+    room = room_for(V)
+    found = room.found
     bounds, gaps, worst, ends = np.empty(n), np.empty(n), np.empty(n), np.empty(n + len(which))
     for i in range(len(which)):
         a, b = offsets[i], offsets[i + 1]
@@ -154,10 +155,9 @@ def measured(
         for j in range(b - a):
             y, y_end = begins[j], begins[j + 1]
             found[0], found[1], found[2] = 0.0, 0.0, (y + y_end) / 2
-            pair_span(
-                # Sharpness of the bounds during the search, as a share of the distance allowed.
-                V, spans, j, 0.0, 1.0, outline, y, y_end, arc, False, near - rounding, 0.1 * near, work, marks, found,
-            )  # fmt: skip
+            # Sharpness of the bounds during the search, as a share of the distance allowed.
+            demand = Demand(arc, False, near - rounding, 0.1 * near)
+            pair_span(room, spans, (j, 0.0, 1.0), outline, (y, y_end), demand)
             bounds[a + j], gaps[a + j], worst[a + j] = found[0] + rounding, found[1], found[2]
     return Trial(which, places, offsets, points, pieces, bounds, gaps, worst, ends)
 
@@ -167,7 +167,8 @@ def sharpened(
     pieces: FloatArray, outline: FloatArray, bounds: FloatArray, gaps: FloatArray, ends: FloatArray, sharpness: float
 ) -> tuple[float, float]:
     """Bound and gap of a contour from those of its spans, within ``sharpness`` of each other; see :class:`Trial`."""
-    no_arc, (work, marks, found) = np.empty(0), room_for(1)
+    no_arc, room = np.empty(0), room_for(1)
+    found = room.found
     rounding = ROUNDING * max(extent(pieces), extent(outline))
     left, bound, gap = bounds.copy(), 0.0, gaps.max()
     while True:
@@ -176,10 +177,8 @@ def sharpened(
         if left[i] <= enough:
             return max(bound, left[i]), gap
         found[:] = 0.0
-        pair_span(
-            1, pieces, i, 0.0, 1.0, outline, ends[i], ends[i + 1], no_arc, False, enough - rounding, sharpness, work,
-            marks, found,
-        )  # fmt: skip
+        demand = Demand(no_arc, False, enough - rounding, sharpness)
+        pair_span(room, pieces, (i, 0.0, 1.0), outline, (ends[i], ends[i + 1]), demand)
         gap, bound = max(gap, found[1]), max(bound, found[0] + rounding)
         left[i] = 0.0
 

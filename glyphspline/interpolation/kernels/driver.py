@@ -10,14 +10,15 @@ from ...arrays import grown
 from ...compiled import compiled, inlined
 from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
-from ..method import RELATIVE_TOLERANCE
+from ..method import RELATIVE_TOLERANCE, Rule
 from ..polygon import LARGEST as LARGEST_EXTENT
-from ..polygon import SAME_VERTEX
+from ..polygon import SAME_VERTEX, Polygons
 from ..polygon import SMALLEST as SMALLEST_EXTENT
+from ..result import Found
 from .footpoint import WORK
 from .lemma2 import vertex_interval
-from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, guard_for, one_pass, set_weights
-from .search import settle
+from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, one_pass, set_weights
+from .search import Curve, Room, settle
 
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 """Status codes. A refused polygon is checked again in Python to build the error message."""
@@ -32,33 +33,25 @@ or beyond the ends of an arc.
 
 
 @compiled
-def prepare(
-    k0: int, k1: int, points: FloatArray, offsets: IntArray, own_knots: FloatArray, tangents: FloatArray,
-    held: BoolArray, peak_shares: FloatArray, tolerances: FloatArray, closed: bool, variant: int, margin: float,
-    exponent: float, knots: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray, rates: FloatArray,
-) -> None:  # fmt: skip
-    """Merge the vertices of polygons k0 to k1 - 1, compute knots and search intervals.
+def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> FloatArray:
+    """Interpolate polygons k0 to k1 - 1; returns their residuals end to end."""
+    prepare(k0, k1, polygons, rule, found)
+    return iterate(k0, k1, polygons, rule, found)
 
-    Args:
-        points, offsets: (N, d), (K + 1,) polygons end to end; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
-        own_knots: () or all polygons' own parameters end to end, n + 1 each if closed, n if open.
-        tangents: (K, 2, d) end tangents of open arcs, NaN for natural ends; (0, 2, d) if closed.
-        held: (N,) whether a vertex of a closed polygon is held: its control point stays at it, and the curve need not
-            pass through it; () where none is.
-        peak_shares: (K,) of ``fallback="peak"``, 0 for "knot".
-        tolerances: (K,) residual tolerances; NaN is replaced by the one of ``RELATIVE_TOLERANCE``.
-        exponent: of the chord length in the knots; negative for own knots.
-        knots, bounds, kept, whole, rates: results, as :class:`..result.Found` has them; bounds relative to the knots.
-    """
-    most = 0
+
+@compiled
+def prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> None:
+    """Merge the vertices of polygons k0 to k1 - 1, compute knots and search intervals, relative to the knots yet."""
+    points, offsets, held, tolerances = polygons.points, polygons.offsets, polygons.held, polygons.tolerances
+    knots, bounds, kept, closed, most = found.knots, found.bounds, found.kept, rule.closed, 0
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
-    own_room = np.zeros(most + 2 * PAD), np.zeros(2), np.zeros(4), np.zeros(4)
-    h, natural, before, after = borrowed(own_room)
+    own_room = np.zeros(most + 2 * PAD), np.zeros(2), np.zeros((2, 4))
+    h, natural, sides = borrowed(own_room)
     for k in range(k0, k1):
         first, last, shift = offsets[k], offsets[k + 1], k if closed else 0
-        q, own, row = points[first:last], kept[first:last], whole[k]
-        u, given = knots[first + shift : last + shift + closed], own_knots[first + shift : last + shift + closed]
+        q, own, row = points[first:last], kept[first:last], found.whole[k]
+        u, given = knots[first + shift : last + shift + closed], polygons.knots[first + shift : last + shift + closed]
         row[STATUS], row[ITERATIONS], row[FALLBACKS], row[SEARCHES], row[UNCERTIFIED] = BAD_POLYGON, -1, 0, 0, 0
         n, extent = merge(q, closed, own)
         row[KEPT] = n
@@ -66,45 +59,43 @@ def prepare(
             continue
         if np.isnan(tolerances[k]):
             tolerances[k] = RELATIVE_TOLERANCE * extent
-        if not set_knots(q, own, n, closed, exponent, given, u):
+        if not set_knots(q, own, n, closed, rule.exponent, given, u):
             row[STATUS] = BAD_KNOTS
             continue
         row[STATUS] = OK
         set_steps(u, n, closed, 1.0, h)
         if not closed:
-            set_natural(tangents[k], n, h, natural)
-        least = 1.0
+            set_natural(polygons.tangents[k], n, h, natural)
+        least, peak_share = 1.0, polygons.peak_shares[k]
         for i in range(n):
             bounds[first + i, 0] = bounds[first + i, 1] = 0.0
             if (closed or 0 < i < n - 1) and not (held.shape[0] > 0 and held[first + own[i]]):
-                low, high, value, missing = vertex_interval(
-                    h, PAD + i, i, n, closed, variant, margin, peak_shares[k], natural, before, after
-                )
+                low, high, value, missing = vertex_interval(h, PAD + i, i, n, rule, peak_share, natural, sides)
                 bounds[first + i, 0], bounds[first + i, 1], least = low, high, min(least, value)
                 row[FALLBACKS] += 1 if missing else 0
-        rates[k] = 2.0 * (1.0 - least)
+        found.rates[k] = 2.0 * (1.0 - least)
     keep_alive(own_room)
 
 
 @compiled
-def iterate(
-    k0: int, k1: int, points: FloatArray, offsets: IntArray, tangents: FloatArray, held: BoolArray,
-    tolerances: FloatArray, closed: bool, variant: int, max_iterations: int, knots: FloatArray, controls: FloatArray,
-    parameters: FloatArray, bounds: FloatArray, kept: IntArray, whole: IntArray,
-) -> FloatArray:  # fmt: skip
+def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> FloatArray:
     """Iterate polygons k0 to k1 - 1 that :func:`prepare` has prepared; returns their residuals end to end."""
+    points, offsets, tangents, held = polygons.points, polygons.offsets, polygons.tangents, polygons.held
+    knots, bounds, kept, closed, variant = found.knots, found.bounds, found.kept, rule.closed, rule.variant
     d, most, residuals, used = points.shape[1], 0, np.empty(64), 0
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
-    size, guard = most + 2 * PAD + WHOLE, guard_for(d)
+    size = most + 2 * PAD + WHOLE
     rows = np.zeros(size), np.zeros((most + LANES - 1) // LANES * BLOCK), np.zeros(2), np.zeros(d), np.zeros(d * AXIS)
     tables = np.zeros((d, size)), np.zeros((d, size)), np.zeros((d, size)), np.zeros((4, d)), np.zeros((4, d))
     scratch = np.zeros(SCRATCH), np.zeros((min(d, 4), 4)), np.zeros(WORK)
     h, blocks, natural, e, T = borrowed(rows)
     p, P, N, ends, b = borrowed(tables)
     S, c, work = borrowed(scratch)
+    room = Room(b, c, e, work)
     for k in range(k0, k1):
-        first, last, shift, row, n = offsets[k], offsets[k + 1], k if closed else 0, whole[k], whole[k, KEPT]
+        first, last, shift, row = offsets[k], offsets[k + 1], k if closed else 0, found.whole[k]
+        n = row[KEPT]
         if row[STATUS] != OK:
             continue
         q, own, u = points[first:last], kept[first:last], knots[first + shift : last + shift + closed]
@@ -115,7 +106,7 @@ def iterate(
         start, stop = (PAD, PAD + n) if closed else (PAD + 1, PAD + n - 1)
         set_weights(h, start, stop, blocks)
         set_bounds(bounds[first:last], held[first:last], own, n, knot_unit, h, start, blocks)
-        passes, limit, width = 0, tolerances[k] * unit, 1 if variant == 4 else n
+        passes, limit, width = 0, polygons.tolerances[k] * unit, 1 if variant == 4 else n
         while True:
             fill_edges(P, n, closed, ends, natural)
             largest, now = 0.0, P
@@ -124,12 +115,10 @@ def iterate(
                 now = N
             for i in range(start, stop, width):
                 part, behind = blocks[(i - start) // LANES * BLOCK + (i - start) % LANES :], min(i + width, stop)
-                squared, left = one_pass(now, N, p, part, S, T, i, behind, guard)
+                squared, left = one_pass(now, N, p, part, S, T, i, behind)
                 largest = max(largest, squared)
                 if left > 0 or variant == 0:
-                    squared, searched, uncertified = settle(
-                        now, N, p, h, part, i, behind, variant == 0, guard, b, c, e, work
-                    )
+                    squared, searched, uncertified = settle(Curve(now, p, h), N, part, i, behind, variant == 0, room)
                     largest = max(largest, squared)
                     row[SEARCHES] += searched
                     row[UNCERTIFIED] += uncertified
@@ -141,12 +130,12 @@ def iterate(
             used, passes, done = used + 1, passes + 1, error < limit
             if done and variant == 4:  # the moves of the sweep stand
                 P, N = N, P
-            if done or not np.inf > error or passes > max_iterations:
+            if done or not np.inf > error or passes > rule.max_iterations:
                 break
             P, N = N, P
         row[ITERATIONS] = passes - 1
-        store(q, own, n, u, closed, 1.0 / unit, P, controls[first if closed else first + 2 * k :])
-        store_footpoints(u, n, 1.0 / knot_unit, start, blocks, parameters[first:last], bounds[first:last])
+        store(q, own, n, u, closed, 1.0 / unit, P, found.controls[first if closed else first + 2 * k :])
+        store_footpoints(u, n, 1.0 / knot_unit, start, blocks, found.parameters[first:last], bounds[first:last])
     keep_alive((rows, tables, scratch))
     return residuals[:used]
 

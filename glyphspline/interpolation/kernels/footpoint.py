@@ -242,13 +242,12 @@ def better(x: float, D: float, new_x: float, new_D: float, centre: float, tie: f
 
 @compiled
 def search_piece(
-    c: FloatArray, d: int, origin: float, low: float, high: float, centre: float, x: float, D: float, tie: float,
-    work: FloatArray,
-) -> tuple[float, float, bool]:  # fmt: skip
+    c: FloatArray, d: int, low: float, high: float, centre: float, x: float, D: float, tie: float, work: FloatArray
+) -> tuple[float, float, bool]:
     """Improve the candidate (x, D) by all that the piece has on [low, high].
 
     Args:
-        c: (m, d + 1) coefficients of q by ascending powers of y, 2 ≤ m ≤ d + 1; parameters are ``origin + y``.
+        c: (m, d + 1) coefficients of q by ascending powers of y, 2 ≤ m ≤ d + 1.
         x, D: the best so far, D = inf if there is none.
 
     Returns:
@@ -256,10 +255,10 @@ def search_piece(
     """
     if np.inf > D and lower_bound(c, d, low, high, work)[0] > D * (1 + EQUAL) + tie:
         return x, D, True
-    start = min(max(x - origin, low), high)
+    start = min(max(x, low), high)
     y = local_minimum(c, d, low, high, start)
     expand(c, d, y, work)
-    x, D = better(x, D, origin + y, work[SQUARED, 0], centre, tie)
+    x, D = better(x, D, y, work[SQUARED, 0], centre, tie)
     allowed, m = SLACK * work[SQUARED, 0] + tie, c.shape[0]
     if proven(work, d, m, high - y, allowed) and proven(work, d, m, low - y, allowed):
         return x, D, True
@@ -281,7 +280,7 @@ def search_piece(
         if parts > 0:
             y = local_minimum(c, d, a, b, 0.5 * (a + b))
             expand(c, d, y, work)
-            x, D = better(x, D, origin + y, work[SQUARED, 0], centre, tie)
+            x, D = better(x, D, y, work[SQUARED, 0], centre, tie)
             if bound >= min(D, D_probe) * (1 - SLACK) - tie:
                 continue
             allowed = SLACK * work[SQUARED, 0] + tie
@@ -295,13 +294,13 @@ def search_piece(
         first, D_a, D_middle = lower_bound(c, d, a, middle, work)
         second, _, D_b = lower_bound(c, d, middle, b, work)
         if parts == 1:
-            x, D = better(x, D, origin + low, D_a, centre, tie)
-            x, D = better(x, D, origin + high, D_b, centre, tie)
+            x, D = better(x, D, low, D_a, centre, tie)
+            x, D = better(x, D, high, D_b, centre, tie)
         if D_middle < D_probe:
             probe, D_probe = middle, D_middle
         left[count], right[count], bounds[count] = a, middle, first
         left[count + 1], right[count + 1], bounds[count + 1] = middle, b, second
         count += 2
     if D_probe < D * (1 - EQUAL) - tie:
-        x, D = origin + probe, D_probe
+        x, D = probe, D_probe
     return x, D, certified and np.inf > D

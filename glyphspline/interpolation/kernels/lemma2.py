@@ -14,35 +14,38 @@ import numpy as np
 
 from ...compiled import compiled
 from ...types import FloatArray, Real
-from ..method import END_MARGIN
+from ..method import END_MARGIN, Rule
 
 STEPS = 60
 CLOSE = 1e-6
 """A step this small (share of the span) is the last of Halley's method: what it leaves is the cube of that."""
 
+Side = tuple[float, float, float]
+"""Bernstein coefficients of a function on one side of its knot, from there outwards."""
+
 
 @compiled
 def vertex_interval(
-    h: FloatArray, j: int, i: int, n: int, closed: bool, variant: int, margin: float, peak_share: float,
-    natural: FloatArray, before: FloatArray, after: FloatArray,
-) -> tuple[float, float, float, bool]:  # fmt: skip
+    h: FloatArray, j: int, i: int, n: int, rule: Rule, peak_share: float, natural: FloatArray, sides: FloatArray
+) -> tuple[float, float, float, bool]:
     """The interval of vertex i of n about its knot, the least value of B_i on it, and whether Lemma 2 has none.
 
     Args:
         h: knot intervals; h[j] is the one after u_i.
         peak_share: of ``fallback="peak"``, 0 for "knot".
-        natural: (2,) see :func:`add_fixed`. before, after: (4,) scratch.
+        natural: (2,) see :func:`add_fixed`. sides: (2, 4) scratch.
     """
-    left, right = h[j - 1], h[j]
+    left, right, variant = h[j - 1], h[j], rule.variant
     if variant == 0:
         return -(h[j - 2] + left), right + h[j + 1], 0.0, False
     a0, a1, a2, knot, b1, b2, b3 = coefficients(h[j - 2], left, right, h[j + 1])
     if variant == 1:
         return -left, right, min(a0, b3), False
-    if not closed and not 2 < i < n - 3:  # a fixed function of an arc reaches no other intervals
+    if not rule.closed and not 2 < i < n - 3:  # a fixed function of an arc reaches no other intervals
+        before, after = sides[0], sides[1]
         before[0], before[1], before[2], before[3] = a0, a1, a2, knot
         after[0], after[1], after[2], after[3] = knot, b1, b2, b3
-        c = add_fixed(h, j - 1, i, n, natural[0], natural[1], margin, before, after)
+        c = add_fixed(h, j - 1, i, n, natural[0], natural[1], rule.margin, before, after)
         if variant == 3:
             return 0.0, 0.0, before[3], False
         low, high, least, found = one_interval(before, after, c, peak_share if peak_share > 0.0 else 1.0)
@@ -50,16 +53,15 @@ def vertex_interval(
             return low * (left if low < 0.0 else right), high * (left if high < 0.0 else right), least, False
     if variant == 3:
         return 0.0, 0.0, knot, False
-    rises = b1 > knot
-    c1, c2, c3 = (b1, b2, b3) if rises else (a2, a1, a0)
-    y, top = peak_of(knot, c1, c2, c3)
+    rises, before_knot, behind_knot = b1 > knot, (a2, a1, a0), (b1, b2, b3)
+    main, other = (behind_knot, before_knot) if rises else (before_knot, behind_knot)
+    y, top = peak_of(knot, main)
     if top <= 0.5 and peak_share == 0.0:
         return 0.0, 0.0, knot, True
-    level = 0.5 + margin
+    level = 0.5 + rule.margin
     if peak_share > 0.0:
         level = min(level, peak_share * top)
-    o1, o2, o3 = (a2, a1, a0) if rises else (b1, b2, b3)
-    near, far, least = level_interval(knot, c1, c2, c3, o1, o2, o3, y, top, level)
+    near, far, least = level_interval(knot, main, other, y, top, level)
     low, high = (near, far) if rises else (-far, -near)
     return low * (left if low < 0.0 else right), high * (left if high < 0.0 else right), least, top <= 0.5
 
@@ -134,20 +136,21 @@ def one_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> t
         above 1/2, or the level is below.
     """
     rises = b[1] > b[0]
-    c1, c2, c3 = (b[1], b[2], b[3]) if rises else (a[2], a[1], a[0])
-    y, top = peak_of(b[0], c1, c2, c3)
+    before, behind = (a[2], a[1], a[0]), (b[1], b[2], b[3])
+    main, other = (behind, before) if rises else (before, behind)
+    y, top = peak_of(b[0], main)
     level = min(0.5 + margin, share * top)
     if top <= 0.5 or level < 0.5:
         return 0.0, 0.0, b[0], False
-    o1, o2, o3 = (a[2], a[1], a[0]) if rises else (b[1], b[2], b[3])
-    near, far, least = level_interval(b[0], c1, c2, c3, o1, o2, o3, y, top, level)
+    near, far, least = level_interval(b[0], main, other, y, top, level)
     low, high = (near, far) if rises else (-far, -near)
     return low, high, least, True
 
 
 @compiled
-def peak_of(knot: float, c1: float, c2: float, c3: float) -> tuple[float, float]:
-    """Where on the main side a function of these Bernstein coefficients is highest, and how high it is there."""
+def peak_of(knot: float, main: Side) -> tuple[float, float]:
+    """Where on the main side a function is highest, and how high it is there."""
+    c1, c2, c3 = main
     d0, d1, d2 = c1 - knot, c2 - c1, c3 - c2
     square = d1 * d1 - d0 * d2
     if d0 <= 0.0:
@@ -161,14 +164,15 @@ def peak_of(knot: float, c1: float, c2: float, c3: float) -> tuple[float, float]
 
 @compiled
 def level_interval(
-    knot: float, c1: float, c2: float, c3: float, o1: float, o2: float, o3: float, y: float, top: float, level: float
+    knot: float, main: Side, other: Side, y: float, top: float, level: float
 ) -> tuple[float, float, float]:
     """The ends of the interval on which a function is at least ``level``, as shares along the main side; its least.
 
     Args:
-        knot, c1, …, c3: Bernstein coefficients on the main side; o1, …, o3: on the other one, away from the knot.
+        knot: the function there.
         y, top: its peak, as :func:`peak_of` has it; where ``top`` is not above the level, the interval is that alone.
     """
+    (c1, c2, c3), (o1, o2, o3) = main, other
     if top <= level:
         return y, y, top
     far = 1.0 if c3 >= level else crossing(knot, c1, c2, c3, level, y, 1.0)

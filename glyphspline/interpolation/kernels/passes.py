@@ -85,17 +85,9 @@ def guard_for(d: int) -> float:
 
 
 @compiled
-def expanded(
-    gap: Real, d0: Real, d1: Real, w0: Real, w1: Real, w2: Real, third0: Real, third1: Real, share: Real, ahead: Real,
-    behind: Real,
-) -> tuple[Real, Real, Real, Real]:  # fmt: skip
-    """A coordinate of E, V, and of Z to the right and, running outwards, to the left of a knot.
-
-    Args:
-        gap: P_i - p_i. d0, d1: d_i and d_{i+1}. w0, w1, w2: w_{i-1} to w_{i+1}. The rest: as rows of a block.
-    """
-    e, v = gap + ahead * d1 - behind * d0, d0 + share * (d1 - d0)
-    return e, v, third1 * (w2 - w1), third0 * (w0 - w1)
+def at_knot(gap: Real, d0: Real, d1: Real, share: Real, ahead: Real, behind: Real) -> tuple[Real, Real]:
+    """A coordinate of E and V, from P_i - p_i, d_i and d_{i+1}; the rest: as rows of a block."""
+    return gap + ahead * d1 - behind * d0, d0 + share * (d1 - d0)
 
 
 @compiled
@@ -158,10 +150,12 @@ def _expand(P: FloatArray, p: FloatArray, k: int, blocks: FloatArray, S: FloatAr
             S[C + j] = blocks[HALF + j] * (S[D + j + 1] - S[D + j])
         for j in range(m):
             t[W + j] = S[C + j + 1]
-            t[E + j], t[V + j], t[Z + j], t[O + j] = expanded(
-                x[j + 2] - q[j], S[D + j + 1], S[D + j + 2], S[C + j], S[C + j + 1], S[C + j + 2],
-                blocks[THIRD + j], blocks[THIRD + j + 1], blocks[SHARE + j], blocks[AHEAD + j], blocks[BEHIND + j],
-            )  # fmt: skip
+            e, v = at_knot(
+                x[j + 2] - q[j], S[D + j + 1], S[D + j + 2], blocks[SHARE + j], blocks[AHEAD + j], blocks[BEHIND + j]
+            )
+            right = blocks[THIRD + j + 1] * (S[C + j + 2] - S[C + j + 1])
+            left = blocks[THIRD + j] * (S[C + j] - S[C + j + 1])  # it runs outwards
+            t[E + j], t[V + j], t[Z + j], t[O + j] = e, v, right, left
     for j in range(m):
         S[EV + j] = T[E + j] * T[V + j] + T[AXIS + E + j] * T[AXIS + V + j]
     for axis in range(2, d):
@@ -300,9 +294,8 @@ def _certify(blocks: FloatArray, S: FloatArray, T: FloatArray, d: int, m: int, g
 
 @compiled
 def one_pass(
-    P: FloatArray, N: FloatArray, p: FloatArray, blocks: FloatArray, S: FloatArray, T: FloatArray, start: int,
-    stop: int, guard: float,
-) -> tuple[float, int]:  # fmt: skip
+    P: FloatArray, N: FloatArray, p: FloatArray, blocks: FloatArray, S: FloatArray, T: FloatArray, start: int, stop: int
+) -> tuple[float, int]:
     """Write footpoints to ``blocks``, and the next control points P_i + p_i - C(t_i) to N; of one vertex N may be P.
 
     Vertices of which something fails are left to :func:`.search.settle`.
@@ -316,7 +309,7 @@ def one_pass(
     Returns:
         The largest squared error before the update, and the number of vertices that are left.
     """
-    d, largest, left = P.shape[0], 0.0, 0
+    d, guard, largest, left = P.shape[0], guard_for(P.shape[0]), 0.0, 0
     for k in range(start, stop, LANES):
         count = min(LANES, stop - k)
         m = (count + WHOLE - 1) // WHOLE * WHOLE if count > 1 else 1

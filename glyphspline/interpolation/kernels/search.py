@@ -7,13 +7,15 @@ again and few of them are searched, on contours of glyphs one in a thousand.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...compiled import compiled
 from ...types import FloatArray
 from ..method import TIE_DISTANCE
 from .footpoint import reduce, search_piece
-from .passes import BLOCK, ELSE, FAILED, FREE, HIGH, LANES, LOW, MAIN, SIGN, WILD, X
+from .passes import BLOCK, ELSE, FAILED, FREE, HIGH, LANES, LOW, MAIN, SIGN, WILD, X, guard_for
 
 FINE, SEARCHED, GIVEN_UP = 0, 1, 2
 """What a second look comes to: the point was the nearest; the nearest one was searched; and is not certified."""
@@ -30,20 +32,35 @@ CUT = 0.125
 DEEPEST = 6
 
 
+class Curve(NamedTuple):
+    """Control points and vertices (d, …), and knot intervals: h[j] is the one after knot j."""
+
+    P: FloatArray
+    p: FloatArray
+    h: FloatArray
+
+
+class Room(NamedTuple):
+    """Scratch for a second look: (4, d), (min(d, 4), 4); (d,), the curve's point less the vertex; and ``WORK``."""
+
+    b: FloatArray
+    c: FloatArray
+    e: FloatArray
+    work: FloatArray
+
+
 @compiled
 def settle(
-    P: FloatArray, N: FloatArray, p: FloatArray, h: FloatArray, blocks: FloatArray, start: int, stop: int, wide: bool,
-    guard: float, b: FloatArray, c: FloatArray, e: FloatArray, work: FloatArray,
-) -> tuple[float, int, int]:  # fmt: skip
+    curve: Curve, N: FloatArray, blocks: FloatArray, start: int, stop: int, wide: bool, room: Room
+) -> tuple[float, int, int]:
     """What :func:`.passes.one_pass` has left; the largest squared error, inf if one is not finite, and counts.
 
     These are of the footpoints that took a full search, and of those that are not certified.
 
     Args:
         wide: intervals are whole supports (variant 0), and all vertices are searched; ``blocks`` have the inner spans.
-        b, c, e, work: scratch, see :func:`look_again`.
     """
-    largest, searched, uncertified = 0.0, 0, 0
+    P, h, largest, searched, uncertified = curve.P, curve.h, 0.0, 0, 0
     for i in range(start, stop):
         at = (i - start) // LANES * BLOCK + (i - start) % LANES
         fails, low, high = blocks[FAILED + at], blocks[LOW + at], blocks[HIGH + at]
@@ -52,31 +69,26 @@ def settle(
         elif fails > 0.0 or wide:
             if wide:
                 low, high, fails = low - h[i - 2], high + h[i + 1], WILD
-            x, squared, outcome = look_again(
-                P, p, h, i, blocks[SIGN + at], blocks[X + at], low, high, fails, guard, b, c, e, work
-            )
+            x, squared, outcome = look_again(curve, i, blocks[SIGN + at], blocks[X + at], low, high, fails, room)
             searched += 1 if outcome != FINE else 0
             uncertified += 1 if outcome == GIVEN_UP else 0
             blocks[X + at], largest = x, max(largest, blocks[FREE + at] * squared)
             for axis in range(P.shape[0]):
-                N[axis, i] = P[axis, i] - blocks[FREE + at] * e[axis]
+                N[axis, i] = P[axis, i] - blocks[FREE + at] * room.e[axis]
     return largest, searched, uncertified
 
 
 @compiled
 def look_again(
-    P: FloatArray, p: FloatArray, h: FloatArray, i: int, side: float, x: float, low: float, high: float,
-    fails: float, guard: float, b: FloatArray, c: FloatArray, e: FloatArray, work: FloatArray,
-) -> tuple[float, float, int]:  # fmt: skip
+    curve: Curve, i: int, side: float, x: float, low: float, high: float, fails: float, room: Room
+) -> tuple[float, float, int]:
     """The nearest point of an interval about knot i: its parameter, its squared distance, and what was done.
 
     Args:
-        P, p, h: control points, vertices (d, …) and knot intervals: h[j] is the one after knot j.
         side, x: sign of the main side, and the best point on it. low, high: the interval.
-        fails: which certificates, see :mod:`.passes`; ``WILD``: all spans are searched. guard: see there.
-        b, c: (4, d), (min(d, 4), 4) scratch; work: see :mod:`.footpoint`.
-        e: (d,) for the curve's point less the vertex.
+        fails: which certificates, see :mod:`.passes`; ``WILD``: all spans are searched.
     """
+    (P, p, h), (b, c, e, work), guard = curve, room, guard_for(curve.P.shape[0])
     near, far = max(low if side > 0.0 else -high, 0.0), high if side > 0.0 else -low
     expand(P, p, h, i, i, side > 0.0, b)
     squared, certified, at, right = point_at(b, side * x, e), True, i, side > 0.0
@@ -99,9 +111,7 @@ def look_again(
                 for k in range(4):
                     c[axis, k] = b[k, axis]
         start = sign * x
-        new, distance, whole = search_piece(
-            c, 3, origin, first - origin, last - origin, 0.0, start, squared, TIED, work
-        )
+        new, distance, whole = search_piece(c, 3, first - origin, last - origin, 0.0, start, squared, TIED, work)
         certified = certified and whole
         if distance < squared or new != start:
             x, squared, at, right = sign * new, distance, knot, s >= 0

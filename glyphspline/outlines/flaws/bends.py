@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...compiled import compiled
@@ -17,6 +19,15 @@ SLACK = np.radians(10.0)
 
 STEPS = 8
 """Chords of a segment along which its turn is summed."""
+
+
+class Bend(NamedTuple):
+    """A stretch of a contour between two places, the sign of its curvature, and whether it is the whole contour."""
+
+    begin: float
+    end: float
+    sign: float
+    whole: bool
 
 
 @compiled
@@ -69,9 +80,11 @@ def bend_findings(
                 number = swings(values, n, before, behind, sign, share, least, found)
                 for k in range(number + 1):
                     at[k], sizes[k] = where[found[k] % n], sign * values[found[k] % n]
-                begin, end = where[before % n], where[(behind - 1) % n]
-                rows = table[count:]
-                count += lumps_of(own, at, sizes, number, begin, end, sign, whole, least, least_height, c, rows)
+                bend = Bend(where[before % n], where[(behind - 1) % n], sign, whole)
+                for lump in lumps_of(own, bend, at[: number + 1], sizes[: number + 1], least, least_height):
+                    table[count, 0] = c
+                    table[count, 1], table[count, 2], table[count, 3] = lump[0], lump[1], lump[2]
+                    count += 1
             if ends:
                 first, sign = i, 0.0
             if np.isnan(value):
@@ -83,22 +96,21 @@ def bend_findings(
 
 @compiled
 def lumps_of(
-    cubics: FloatArray, at: FloatArray, sizes: FloatArray, number: int, begin: float, end: float, sign: float,
-    whole: bool, least: float, least_height: float, contour: int, rows: FloatArray,
-) -> int:  # fmt: skip
-    """Write the lumps of one bend into rows (k, 4) of the table; return their number.
+    cubics: FloatArray, bend: Bend, at: FloatArray, sizes: FloatArray, least: float, least_height: float
+) -> FloatArray:
+    """(k, 3) the lumps of one bend: place, share, and how far each moves the curve.
 
     Of two maxima too close together the lesser is a lump; then the least of all, until there are no more than the bend
     needs. The lesser one is that which exceeds the minima beside it by the smaller share.
 
     Args:
-        at, sizes: places and absolute curvatures of the significant extrema, as many as ``number`` swings, and the end.
-        begin, end: of the bend. sign: of its curvature. whole: it is the whole contour.
+        at, sizes: places and absolute curvatures of the significant extrema, and the end.
     """
-    first = 0 if whole else 1
+    begin, end, sign, whole = bend
+    number, first = len(at) - 1, 0 if whole else 1
     if number - first < 3:
-        return 0
-    peaks, size, count = np.empty((number, 3)), 0, 0
+        return np.empty((0, 3))
+    rows, peaks, size, count = np.empty((number, 3)), np.empty((number, 3)), 0, 0
     for k in range(first, number):
         i, j = k - 1 if k else number - 1, (k + 1) % number if whole else k + 1
         beside = max(sizes[i], sizes[j])
@@ -127,12 +139,12 @@ def lumps_of(
             if size <= needed:
                 break
             worst = int(peaks[:size, 1].argmin())
-        rows[count, 0], rows[count, 1] = contour, peaks[worst, 0] % len(cubics)
-        rows[count, 2], rows[count, 3] = peaks[worst, 1], peaks[worst, 2]
+        rows[count, 0] = peaks[worst, 0] % len(cubics)
+        rows[count, 1], rows[count, 2] = peaks[worst, 1], peaks[worst, 2]
         count, size = count + 1, size - 1
         for k in range(worst, size):
             peaks[k, 0], peaks[k, 1], peaks[k, 2] = peaks[k + 1, 0], peaks[k + 1, 1], peaks[k + 1, 2]
-    return count
+    return rows[:count]
 
 
 @compiled

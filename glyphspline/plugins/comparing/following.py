@@ -104,7 +104,7 @@ def runs_beside(chain: FloatArray, other: FloatArray, anchors: FloatArray, toler
     ends, its_ends, all_anchors = np.array([0, m]), np.array([0, len(other)]), np.array([0, m + 1])
     for sharpness in (0.5 * tolerance, SHARPNESS * tolerance):  # few need the second
         pair_instances(
-            1, chain, ends, other, its_ends, anchors, all_anchors, no_arcs, sharpness, tolerance, bounds, gaps
+            1, (chain, ends), (other, its_ends), (anchors, all_anchors), no_arcs, sharpness, tolerance, bounds, gaps
         )
         beyond = bounds > tolerance
         if not np.any(beyond):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,7 +16,7 @@ from ...cli.groups import grouped, only
 from ...cli.messages import print_json, progress, put, say, stop
 from ...cli.tables import plain
 from ...errors import OptionError
-from ...fields import WRITTEN, About
+from ...fields import WRITTEN, About, option
 from ...files import make_folder
 from ...outlines.flaws.kinds import MENDED, MENDED_UNASKED
 from ...types import counted, rounded_up, shortened
@@ -35,6 +36,20 @@ LEFT = 5
 """Findings that are left and named."""
 
 
+@dataclass(frozen=True)
+class MendOptions:
+    """What ``mend`` mends."""
+
+    kinds: str = option(
+        ",".join(MENDED_UNASKED), f"Mend these kinds of findings, between commas: {', '.join(MENDED)}, or all.",
+        FOUND, "KIND,…",
+    )  # fmt: skip
+    tolerance: float | None = option(
+        None, "Let outlines move by this, in font units. Without it, 1/1000 em.", FOUND, "UNITS"
+    )
+    thresholds: str | None = option(None, "Take these thresholds of check: kink=1.", FOUND, "NAME=VALUE,…")
+
+
 @partial(grouped, cls=LayerCommand)
 def mend(
     sources: Annotated[list[Path], typer.Argument(metavar="SOURCE", help=SOURCES_HELP, show_default=False)],
@@ -42,16 +57,9 @@ def mend(
     spec: Annotated[RefitSpec, only("in_place", "layer")],
     report: Annotated[ReportOptions, only("rows", "html")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
+    options: MendOptions,
     out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,
     dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
-    kinds: Annotated[
-        str, About(f"Mend these kinds of findings, between commas: {', '.join(MENDED)}, or all.", FOUND, "KIND,…")
-    ] = ",".join(MENDED_UNASKED),
-    tolerance: Annotated[
-        float | None,
-        About("Let outlines move by this, in font units. Without it, 1/1000 em.", FOUND, metavar="UNITS"),
-    ] = None,
-    thresholds: Annotated[str | None, About("Take these thresholds of check: kink=1.", FOUND, "NAME=VALUE,…")] = None,
 ) -> bool:
     """Mend what check finds in sources: points move as little as it takes, in all masters. None comes.
 
@@ -62,7 +70,7 @@ def mend(
     from ...readers import Font, open_source
     from ...readers.ufo import EditableSource
     from ...runs.schedule import workers
-    from .job import mend_source
+    from .job import Asked, mend_source
 
     if (out is not None) + spec.is_back + dry_run != 1:
         stop("give one of --in-place, --layer, --out and --dry-run")
@@ -70,8 +78,8 @@ def mend(
         raise OptionError("--out takes no two sources of one name")
     if report.html is not None and len(sources) > 1:
         raise OptionError("--html draws one source")
-    limits = thresholds_of(thresholds, None)
-    chosen_kinds = MENDED if kinds == "all" else opt.items_of(kinds)
+    kinds = MENDED if options.kinds == "all" else opt.items_of(options.kinds)
+    asked = Asked(kinds, options.tolerance, thresholds_of(options.thresholds, None))
     found: list[MendedSource] = []
     undone = False
     with workers(run.processes, kinds=["mending"], expected=1, count=len(sources)) as pool:
@@ -81,13 +89,12 @@ def mend(
                 stop(f"{path}: only UFOs, designspaces, Glyphs files and fonts are mended")
             names: Sequence[str] = source.glyph_names
             if subset.is_given:
-                names = asked = chosen(source, subset, run.quiet, str(path))
-                undone |= bool(asked.missing)
+                names = picked = chosen(source, subset, run.quiet, str(path))
+                undone |= bool(picked.missing)
             copy = None if out is None else copy_of(source, out)
             with progress(run.quiet) as observer:
                 found.append(mend_source(
-                    source, names, kinds=chosen_kinds, tolerance=tolerance, thresholds=limits, copy=copy,
-                    layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
+                    source, names, asked, copy=copy, layer=spec.layer, dry=dry_run, executor=pool, observer=observer,
                 ))  # fmt: skip
     if report.html is not None:
         from .page import mending_page

@@ -34,6 +34,9 @@ SURELY = 1 + 1e-9
 LEAST = 1e-3
 """Radians that the grid makes good for: turns below cost nothing."""
 
+Near = tuple[IntArray, IntArray, ComplexArray]
+"""Numbers (b,) of bounds and (l,) of places, and (b, l, 5) sums of points: see :func:`around`."""
+
 
 class Rounding(NamedTuple):
     """What the grid is to keep, for K masters of N points, S of which move.
@@ -159,7 +162,7 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
                 t = of.number[triple[m]]
                 if t >= 0:
                     cost[2 * n : 2 * n + 2, 2 * m : 2 * m + 2] = size * of.cost[k, 2 * s : 2 * s + 2, 2 * t : 2 * t + 2]
-    bounds, acts, others = around(points, of, k, triple)
+    near = around(points, of, k, triple)
     rows = np.array([r for r in range(len(moves)) if np.any(slopes[r])], dtype=np.int64)
     slopes, moved = slopes[rows], moves[rows]
     found, least = now.copy(), np.inf
@@ -186,7 +189,9 @@ def settle_joint(points: ComplexArray, moves: FloatArray, of: Rounding, k: int, 
                         continue
                     change[4], change[5] = c.real - now[2].real, c.imag - now[2].imag
                     put(points, of.implied, k, triple[2], c)
-                    total = priced(total, least, points, of, k, bounds, acts, others, moved, slopes, change)
+                    total = with_bounds(total, least, points, of, k, near)
+                    if total < least:
+                        total = with_samples(total, least, of.limit, moved, slopes, change)
                     if total < least:
                         least, found[0], found[1], found[2] = total, a, b, c
     for n in range(3):
@@ -227,12 +232,8 @@ def without_last(base: float, pulls: FloatArray, cost: FloatArray) -> tuple[floa
 
 
 @compiled
-def around(points: ComplexArray, of: Rounding, k: int, triple: IntArray) -> tuple[IntArray, IntArray, ComplexArray]:
-    """Bounds in which the points around a joint have a part, places where a master has one, and what others add there.
-
-    Returns:
-        Numbers (b,) of bounds and (l,) of places, and (b, l, 5) sums of points.
-    """
+def around(points: ComplexArray, of: Rounding, k: int, triple: IntArray) -> Near:
+    """Bounds in which the points around a joint have a part, where their master has one, and what others add there."""
     count = points.shape[1]
     near = np.zeros(count, dtype=np.bool_)
     for i in triple:
@@ -253,11 +254,9 @@ def around(points: ComplexArray, of: Rounding, k: int, triple: IntArray) -> tupl
 
 
 @compiled
-def priced(
-    total: float, most: float, points: ComplexArray, of: Rounding, k: int, bounds: IntArray, acts: IntArray,
-    others: ComplexArray, moved: FloatArray, slopes: FloatArray, change: FloatArray,
-) -> float:  # fmt: skip
-    """A price with that of bounds and of samples that move too far; infinite once it reaches ``most``."""
+def with_bounds(total: float, most: float, points: ComplexArray, of: Rounding, k: int, near: Near) -> float:
+    """A price with that of bounds near a joint, see :func:`around`; infinite once it reaches ``most``."""
+    bounds, acts, others = near
     for n, b in enumerate(bounds):
         own = of.joints[b]
         for m, place in enumerate(acts):
@@ -273,11 +272,19 @@ def priced(
             total += share * share + BEYOND * beyond * beyond
             if not total < most:
                 return np.inf
+    return total
+
+
+@compiled
+def with_samples(
+    total: float, most: float, limit: float, moved: FloatArray, slopes: FloatArray, change: FloatArray
+) -> float:
+    """A price with that of samples that move beyond a limit; infinite once it reaches ``most``."""
     for r in range(len(moved)):
         way = moved[r]
         for n in range(6):
             way += slopes[r, n] * change[n]
-        beyond = max(abs(way) / of.limit - 1, 0.0)
+        beyond = max(abs(way) / limit - 1, 0.0)
         total += BEYOND * beyond * beyond
         if not total < most:
             return np.inf

@@ -31,6 +31,14 @@ FONT_KEEPS = "needs points to go or to change their order, and hints and variati
 """Why such findings are left in fonts."""
 
 
+class Asked(NamedTuple):
+    """Which kinds of findings are mended, by how much outlines may move, and what counts as a finding."""
+
+    kinds: Sequence[str] = MENDED_UNASKED
+    tolerance: float | None = None
+    thresholds: Thresholds = THRESHOLDS
+
+
 class Mended(NamedTuple):
     """What a worker made of a glyph: as it was, mended (None: nothing moved), what became of its findings, an error."""
 
@@ -45,9 +53,7 @@ class MendJob(Job[Head, list[Mended]]):
     """Glyphs mended as their source draws them; ``outer``: see :attr:`.Source.outer`."""
 
     place: Place
-    kinds: tuple[str, ...]
-    tolerance: float | None
-    thresholds: Thresholds
+    asked: Asked
     outer: int
 
     chunk = 8
@@ -63,9 +69,10 @@ class MendJob(Job[Head, list[Mended]]):
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""
-        found, states = [], State.of_many([masters for masters, _ in contents], self.thresholds, self.outer)
+        (kinds, tolerance, thresholds), found = self.asked, []
+        states = State.of_many([masters for masters, _ in contents], thresholds, self.outer)
         for (masters, into), state in zip(contents, states, strict=True):
-            new, changes = mended(masters, state, self.kinds, self.tolerance, self.thresholds, self.outer, into)
+            new, changes = mended(masters, state, kinds, tolerance, thresholds, self.outer, into)
             moved = None if new is masters else new
             found.append(Mended(masters if moved else None, moved, [c for c in changes if c.why != OF_COMPONENT]))
         return found
@@ -133,10 +140,8 @@ class MendedSource:
 def mend_source(
     source: EditableSource | Font,
     names: Sequence[str],
+    asked: Asked,
     *,
-    kinds: Sequence[str] = MENDED_UNASKED,
-    tolerance: float | None = None,
-    thresholds: Thresholds = THRESHOLDS,
     copy: Path | None = None,
     layer: str | None = None,
     dry: bool = False,
@@ -146,14 +151,14 @@ def mend_source(
     """Mend glyphs of a source or font, and write those that changed into it, a layer of it or a copy.
 
     Args:
-        names: of the glyphs. kinds, tolerance, thresholds: see :func:`glyphspline.mend`.
+        names: of the glyphs. asked: see :func:`glyphspline.mend`.
         copy, layer: see :func:`.back.write_back`. dry: write nothing.
         executor: see :func:`.schedule.workers`; without it, this process does all.
 
     Raises:
         OptionError: a kind cannot be mended. OutputError: the source takes nothing back, or cannot be written.
     """
-    check_kinds(kinds)
+    check_kinds(asked.kinds)
     if isinstance(source, Font):
         from ..fonts.back.fonts import editable as editable_font
 
@@ -164,7 +169,7 @@ def mend_source(
         from ..fonts.back.back import editable
 
         editable(source)
-    job = MendJob(place_of(source), tuple(kinds), tolerance, thresholds, source.outer)
+    job = MendJob(place_of(source), asked, source.outer)
     found, new = MendedSource(str(source.path)), list[New]()
     with workers(0, executor=executor) as pool:
         for part in run(job, list(heads_of(source, names).values()), pool, ordered=True, observer=observer):
@@ -177,7 +182,7 @@ def mend_source(
                     redrawn = {each.contour for each in one.changes if each.is_mended and each.kind in EDITED}
                     new.append(New(one.old, one.new, redrawn))
         with writing(copy or source.path):
-            stay = spoiling(source, new, tolerance, thresholds, pool)
+            stay = spoiling(source, new, asked.tolerance, asked.thresholds, pool)
     new = [each for each in new if each.now.name not in stay]
     with writing(copy or source.path):
         written = write(source, new, copy, layer, dry)

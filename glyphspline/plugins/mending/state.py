@@ -251,7 +251,7 @@ def _measured(
         bounds = np.zeros(m)
         bounds[some] = np.nan
         pair_instances(
-            V, results, offsets_of([m]), sources, offsets_of([old.shape[1]]), anchors, offsets_of([m + 1]), arcs,
+            V, (results, offsets_of([m])), (sources, offsets_of([old.shape[1]])), (anchors, offsets_of([m + 1])), arcs,
             SHARPNESS * tolerance, tolerance, bounds, np.zeros(m),
         )  # fmt: skip
         found += bounds

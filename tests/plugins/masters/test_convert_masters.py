@@ -216,7 +216,7 @@ def test_the_slip_bound_holds_in_between_and_is_not_the_plain_one() -> None:
     anchors, bounds = np.array([[0.0, 0], [1, 1], [2, 2]]), np.full(2, np.nan)
     arcs, two, three = np.array([[0.0, 1, 0, 1], [1, 2, 1, 2]]), np.array([0, 2]), np.array([0, 3])
     chains = [each.swapaxes(0, 1).reshape(-1, 4, 2) for each in (results, sources)]
-    pair_instances(2, chains[0], two, chains[1], two, anchors, three, arcs, 0.0, 0.5, bounds, np.zeros(2))
+    pair_instances(2, (chains[0], two), (chains[1], two), (anchors, three), arcs, 0.0, 0.5, bounds, np.zeros(2))
     assert bounds[1] < 1e-9
     assert np.abs(results - sources).max() > 15
     assert bounds[0] <= 0.5

@@ -187,8 +187,8 @@ class FontSources(NamedTuple):
         if len(sources) > 1:
             arcs, sharpness, gaps = np.concatenate(list(map(runs_of, inner, anchors))), 0.0, np.zeros(len(degrees))
         pair_instances(
-            len(corners), mixed(corners, written), offsets, mixed(corners, cubics), source.offsets,
-            np.concatenate(anchors), ends, arcs, sharpness, self.tolerance, bounds, gaps,
+            len(corners), (mixed(corners, written), offsets), (mixed(corners, cubics), source.offsets),
+            (np.concatenate(anchors), ends), arcs, sharpness, self.tolerance, bounds, gaps,
         )  # fmt: skip
         if len(sources) > 1:
             gaps[:] = np.nan
