@@ -150,6 +150,7 @@ def convert_masters(masters: Masters, options: Options = DEFAULTS, *, fit: Fit |
     from ...fitting.measures import check_coordinates
 
     check_options(options)
+    options = options.for_em(masters.metrics.units_per_em)
     every = [masters.master(k).arrays for k in range(len(masters))]
     encloses = np.any([enclosing(arrays) for arrays in every], axis=0)
     left_out = tuple(

@@ -87,7 +87,7 @@ class Work:
         result = moved(self.converted(state.glyph, state.location, state.options), state.moved)
         if variant is None or variant == state.options.variant:
             return result
-        options = replace(state.options, variant=variant)
+        options = replace(result.options, variant=variant)
         if state.options.corners == "sharp":
             return self.converted(state.glyph, state.location, options)
         contours = tuple(through(contour, contour.polygon, options) for contour in result.contours)
