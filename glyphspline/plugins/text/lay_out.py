@@ -83,7 +83,7 @@ def layout(
     fonts = (font, *fallbacks)
     for each in fonts:
         require(isinstance(each, Source), "a font is a source that open_font or open_source returns", each)
-    shapers, notes = _shapers(text, fonts, setting)
+    shapers, notes = _shapers(fonts, setting)
     check_features(setting.parsed_features, [source.shaper.face for source in fonts if source.shaper is not None])
     lines: list[tuple[Paragraph, int, Line]] = []
     missing: dict[str, None] = {}
@@ -137,7 +137,7 @@ def paragraphs(text: str) -> Sequence[tuple[int, int]]:
     return list(zip(starts, stops, strict=True))
 
 
-def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], list[str]]:
+def _shapers(fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], list[str]]:
     shapers: list[Shaper] = []
     notes = []
     features = (*(APART if setting.letter_spacing else ()), *setting.parsed_features)
@@ -149,7 +149,7 @@ def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list
         if setting.vertical or setting.features:
             what = "vertical text" if setting.vertical else "features"
             raise OptionError(f"{source.path}: {what} needs a font file: {source.format} has no tables for shaping")
-        shapers.append(PlainShaper(source, scale, text))
+        shapers.append(PlainShaper(source, scale))
         notes.append(f"{source.path.name} is not shaped: no kerning, ligatures or joined letters in {source.format}")
     return shapers, notes
 
