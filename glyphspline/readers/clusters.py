@@ -7,6 +7,9 @@ from itertools import chain, pairwise
 from typing import TYPE_CHECKING, NamedTuple
 from unicodedata import category, normalize
 
+import uharfbuzz as hb
+from uharfbuzz import BufferFlags
+
 from ..errors import GlyphsplineError
 
 if TYPE_CHECKING:
@@ -25,6 +28,12 @@ RADICALS, JAMO = range(0x2E80, 0x2FE0), (range(0x1100, 0x1200), range(0xA960, 0x
 """Parts of Han characters, and of Hangul syllables, which look as characters do that are written."""
 
 LETTERS_OF_HANGUL = range(0x3131, 0x318F)
+
+
+ALONE = (
+    BufferFlags.BOT | BufferFlags.EOT | BufferFlags.REMOVE_DEFAULT_IGNORABLES | BufferFlags.DO_NOT_INSERT_DOTTED_CIRCLE
+)
+"""How HarfBuzz shapes what nothing stands beside."""
 
 
 class Shown(NamedTuple):
@@ -92,6 +101,8 @@ def glyphs_of(source: Source, cluster: str) -> Shown:
     source shows glyphs by its code points, as they are, composed or decomposed, after its rules for the location.
     """
     names = _shaped(source, cluster) if source.shaper is not None else _mapped(source, cluster)
+    if names is not None and len(cluster) == 1:
+        return Shown(names)
     if names is not None:
         varied = [a + b for a, b in pairwise(cluster) if is_selector(b) and b not in UNSEEN]
         return Shown(names, (), tuple(each for each in varied if not _has_variation(source, each)))
@@ -105,14 +116,11 @@ def _shaped(source: Source, cluster: str) -> tuple[str, ...] | None:
 
     The glyph of a single character stays where HarfBuzz would put it together from others, or hide it.
     """
-    import uharfbuzz as hb
-
     buffer = hb.Buffer()
     buffer.add_codepoints(list(map(ord, cluster)))
     buffer.guess_segment_properties()
     buffer.language = "und"  # not the one that this process happens to run in
-    flags = hb.BufferFlags
-    buffer.flags = flags.BOT | flags.EOT | flags.REMOVE_DEFAULT_IGNORABLES | flags.DO_NOT_INSERT_DOTTED_CIRCLE
+    buffer.flags = ALONE
     try:
         hb.shape(source.shaper, buffer)
     except MemoryError as error:
@@ -123,9 +131,10 @@ def _shaped(source: Source, cluster: str) -> tuple[str, ...] | None:
         extents = source.shaper.get_glyph_extents(source.gids[name])
         if not gids or (extents and extents.width and extents.height):
             return (name,)
-    if 0 in gids or max(gids, default=0) >= len(source.glyph_names):
+    names, count = source.glyph_names, len(source.glyph_names)
+    if not all(0 < gid < count for gid in gids):
         return None
-    return tuple([source.glyph_names[gid] for gid in (gids[::-1] if buffer.direction == "rtl" else gids)])
+    return tuple([names[gid] for gid in (gids[::-1] if buffer.direction == "rtl" else gids)])
 
 
 def _mapped(source: Source, cluster: str) -> tuple[str, ...] | None:

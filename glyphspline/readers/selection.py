@@ -140,8 +140,10 @@ class Characters:
         self.composed: dict[str, tuple[str, ...]] = {}
         for cluster in asked:
             shown = glyphs_of(source, cluster)
-            self.names |= dict.fromkeys(shown.names)
-            self.missing += [" ".join([f"U+{ord(c):04X}" for c in each]) for each in (*shown.missing, *shown.unvaried)]
+            for name in shown.names:
+                self.names[name] = None
+            for one in shown.missing + shown.unvaried:
+                self.missing.append(" ".join([f"U+{ord(character):04X}" for character in one]))
             if len(shown.names) == 1:
                 self.alone.setdefault(shown.names[0], cluster)
             elif shown.names and not shown.missing:

@@ -94,7 +94,7 @@ def _by_character(
 
 def _key(name: str) -> str:
     """What file systems compare: some ignore case, some how accents are composed."""
-    return name.lower() if name.isascii() else normalize("NFKC", name).casefold()
+    return name.lower() if name.isascii() else normalize("NFC", name).casefold()
 
 
 def _is_plain(name: str, key: str) -> bool:

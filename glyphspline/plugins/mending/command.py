@@ -53,7 +53,7 @@ def mend(
     ] = None,
     thresholds: Annotated[str | None, About("Take these thresholds of check: kink=1.", FOUND, "NAME=VALUE,…")] = None,
 ) -> bool:
-    """Mend what check finds in sources: points move as little as it takes, in all masters. None comes.
+    """Mend what check finds in sources: points move as little as it takes, in all masters.
 
     Kinks are mended unless other kinds are asked for, so that joints meant to be smooth kink nowhere along an axis.
     Points go only where short, straight and repeated are asked for. What would move outlines by more than the
