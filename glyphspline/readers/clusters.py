@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from itertools import chain, pairwise
 from typing import TYPE_CHECKING, NamedTuple
-from unicodedata import category, normalize
+from unicodedata import category, decomposition, normalize
 
 import uharfbuzz as hb
 from uharfbuzz import BufferFlags
@@ -138,22 +138,28 @@ def _shaped(source: Source, cluster: str) -> tuple[str, ...] | None:
 
 
 def _mapped(source: Source, cluster: str) -> tuple[str, ...] | None:
-    """The glyphs of code points; None: some have none."""
-    composed = normalize("NFC", cluster)
-    for form in (cluster if len(cluster) == 1 else composed, composed, normalize("NFD", cluster)):
-        names: list[str | None] = []
-        for k, character in enumerate(form):
-            if k and (name := source.variations.get(form[k - 1 : k + 1])):
-                names[-1] = name
-            elif name := source.cmap.get(ord(character)):
-                names.append(name)
-            elif character in SPACES:
-                names.append(source.cmap.get(0x20))
-            elif not (is_selector(character) or character in UNSEEN):
-                names.append(None)
-        if None not in names:
-            return source.at_location(list(filter(None, names)))
-    return None
+    """The glyphs of code points, composed as far as the source has them; None: some have none."""
+    spelled = "".join(_spelled(source, c) for c in (normalize("NFC", cluster) if len(cluster) > 1 else cluster))
+    names: list[str | None] = []
+    for k, character in enumerate(spelled):
+        if k and (name := source.variations.get(spelled[k - 1 : k + 1])):
+            names[-1] = name
+        elif name := source.cmap.get(ord(character)):
+            names.append(name)
+        elif character in SPACES:
+            names.append(source.cmap.get(0x20))
+        elif not (is_selector(character) or character in UNSEEN):
+            names.append(None)
+    return None if None in names else source.at_location(list(filter(None, names)))
+
+
+def _spelled(source: Source, character: str) -> str:
+    """A character, or what it is composed of, as far as the source has it."""
+    pair = decomposition(character)  # of syllables of Hangul there is none
+    parts = normalize("NFD", character) if not pair or pair[0] == "<" else [chr(int(c, 16)) for c in pair.split()]
+    if ord(character) in source.cmap or list(parts) == [character]:
+        return character
+    return "".join(_spelled(source, part) for part in parts)
 
 
 def _has_variation(source: Source, pair: str) -> bool:
