@@ -3,62 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 from unicodedata import category
 
 import pytest
-from fontTools.feaLib.builder import addOpenTypeFeaturesFromString
-from fontTools.fontBuilder import FontBuilder
-from fontTools.pens.ttGlyphPen import TTGlyphPen
-from fontTools.ttLib.tables._c_m_a_p import CmapSubtable
-from fontTools.ufoLib import UFOWriter
 
 import glyphspline as gs
 from glyphspline.readers.clusters import clusters, unified
+from tests.character_fonts import HEAVY, font_of, ufo_of
 from tests.places import DEJAVU
-
-
-def box() -> Any:
-    pen = TTGlyphPen(None)
-    pen.moveTo((0, 0))
-    for place in [(0, 500), (500, 500), (500, 0)]:
-        pen.lineTo(place)
-    pen.closePath()
-    return pen.glyph()
-
-
-def font_of(
-    path: Path,
-    cmap: dict[int, str],
-    *others: str,
-    features: str = "",
-    weight: bool = False,
-    selectors: list[tuple[int, int, str | None]] | None = None,
-    table: tuple[int, int] | None = None,
-    empty: str = "",
-    location: dict[str, float] | None = None,
-) -> gs.Font:
-    """A font of boxes; ``table``: platform and encoding of its only table of characters, in the place of Unicode."""
-    names = list(dict.fromkeys([".notdef", *cmap.values(), *others]))
-    builder = FontBuilder(1000, isTTF=True)
-    builder.setupGlyphOrder(names)
-    builder.setupCharacterMap({} if table else cmap, uvs=selectors)
-    if table:
-        (only, *_) = builder.font["cmap"].tables = [CmapSubtable.newSubtable(0 if table[0] == 1 else 4)]
-        only.platformID, only.platEncID, only.language, only.cmap = *table, 0, cmap
-    builder.setupGlyf({name: TTGlyphPen(None).glyph() if name == empty else box() for name in names})
-    builder.setupHorizontalMetrics(dict.fromkeys(names, (550, 0)))
-    builder.setupHorizontalHeader(ascent=800, descent=-200)
-    builder.setupNameTable({"familyName": "Asked", "styleName": "Regular"})
-    builder.setupOS2()
-    builder.setupPost()
-    if weight:
-        builder.setupFvar([("wght", 400, 400, 900, "Weight")], [])
-        builder.setupGvar({name: [] for name in names})
-    if features:
-        addOpenTypeFeaturesFromString(builder.font, features)
-    builder.save(path)
-    return gs.open_font(path, location=location)
 
 
 def test_symbols_are_found_by_letters_and_by_their_own_code_points(tmp_path: Path) -> None:
@@ -92,12 +44,8 @@ def test_a_selector_chooses_a_variation_and_what_there_is_none_of_is_said(tmp_pa
 
 
 def test_rules_by_location_hold_where_the_font_is_read(tmp_path: Path) -> None:
-    features = """
-    conditionset heavy { wght 700 900; } heavy;
-    variation rvrn heavy { sub dollar by dollar.heavy; } rvrn;
-    """
     cmap = {0x24: "dollar", 0x6F: "o"}
-    font_of(tmp_path / "r.ttf", cmap, "dollar.heavy", features=features, weight=True)
+    font_of(tmp_path / "r.ttf", cmap, "dollar.heavy", features=HEAVY, weight=True)
     for weight, name in ((400, "dollar"), (800, "dollar.heavy")):
         font = gs.open_font(tmp_path / "r.ttf", location={"wght": weight})
         assert font.select(text="$o") == (name, "o")
@@ -198,29 +146,6 @@ def test_text_is_cut_into_what_is_seen_as_one_character() -> None:
 )
 def test_a_glyph_is_called_by_the_character_that_people_write(codes: list[int], expected: int) -> None:
     assert unified(codes) == expected
-
-
-def ufo_of(path: Path, cmap: dict[int, str], *others: str, lib: dict[str, Any] | None = None) -> gs.Source:
-    """A UFO of boxes."""
-
-    class Glyph:
-        def __init__(self, codes: list[int]) -> None:
-            self.width, self.unicodes = 500, codes
-
-    def draw(pen: Any) -> None:
-        pen.beginPath()
-        for place in [(0, 0), (0, 500), (500, 500), (500, 0)]:
-            pen.addPoint(place, "line")
-        pen.endPath()
-
-    writer = UFOWriter(path)
-    glyphs = writer.getGlyphSet()
-    for name in dict.fromkeys([*cmap.values(), *others]):
-        glyphs.writeGlyph(name, Glyph([code for code, of in cmap.items() if of == name]), draw)
-    glyphs.writeContents()
-    writer.writeLayerContents(["public.default"])
-    writer.writeLib(lib or {})
-    return gs.open_source(path)
 
 
 def test_a_ufo_has_variations_in_its_lib(tmp_path: Path) -> None:
