@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain, pairwise
-from typing import TYPE_CHECKING, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
 from unicodedata import category, decomposition, normalize
 
 import uharfbuzz as hb
 from uharfbuzz import BufferFlags
 
 from ..errors import GlyphsplineError
-
-if TYPE_CHECKING:
-    from .source import Source
 
 SPACES = frozenset("\t\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000")
 """What HarfBuzz makes of the space where a font lacks it."""
@@ -34,6 +32,23 @@ ALONE = (
     BufferFlags.BOT | BufferFlags.EOT | BufferFlags.REMOVE_DEFAULT_IGNORABLES | BufferFlags.DO_NOT_INSERT_DOTTED_CIRCLE
 )
 """How HarfBuzz shapes what nothing stands beside."""
+
+
+class Repertoire(Protocol):
+    """What the way from characters to glyphs needs of a :class:`.Source`."""
+
+    path: Path
+    shaper: Any
+    glyph_names: tuple[str, ...]
+    cmap: Mapping[int, str]
+    variations: Mapping[str, str]
+
+    @property
+    def gids(self) -> dict[str, int]:
+        """Glyph name to glyph index."""
+
+    def at_location(self, names: Sequence[str]) -> tuple[str, ...]:
+        """The glyphs that stand for glyphs at the location."""
 
 
 class Shown(NamedTuple):
@@ -94,7 +109,7 @@ def is_selector(character: str) -> bool:
     return "\ufe00" <= character <= "\ufe0f" or "\U000e0100" <= character <= "\U000e01ef"
 
 
-def glyphs_of(source: Source, cluster: str) -> Shown:
+def glyphs_of(source: Repertoire, cluster: str) -> Shown:
     """How a source shows one of :func:`clusters` where nothing stands beside it.
 
     A font shows what HarfBuzz makes of it with the features that are on by default, at the font's location. Any other
@@ -111,7 +126,7 @@ def glyphs_of(source: Source, cluster: str) -> Shown:
     return Shown(tuple(chain.from_iterable(part.names for part in parts)), tuple(missing) or (cluster,))
 
 
-def _shaped(source: Source, cluster: str) -> tuple[str, ...] | None:
+def _shaped(source: Repertoire, cluster: str) -> tuple[str, ...] | None:
     """The glyphs that HarfBuzz shows; None: some of them are .notdef.
 
     The glyph of a single character stays where HarfBuzz would put it together from others, or hide it.
@@ -137,7 +152,7 @@ def _shaped(source: Source, cluster: str) -> tuple[str, ...] | None:
     return tuple([names[gid] for gid in (gids[::-1] if buffer.direction == "rtl" else gids)])
 
 
-def _mapped(source: Source, cluster: str) -> tuple[str, ...] | None:
+def _mapped(source: Repertoire, cluster: str) -> tuple[str, ...] | None:
     """The glyphs of code points, composed as far as the source has them; None: some have none."""
     spelled = "".join(_spelled(source, c) for c in (normalize("NFC", cluster) if len(cluster) > 1 else cluster))
     names: list[str | None] = []
@@ -153,7 +168,7 @@ def _mapped(source: Source, cluster: str) -> tuple[str, ...] | None:
     return None if None in names else source.at_location(list(filter(None, names)))
 
 
-def _spelled(source: Source, character: str) -> str:
+def _spelled(source: Repertoire, character: str) -> str:
     """A character, or what it is composed of, as far as the source has it."""
     pair = decomposition(character)  # of syllables of Hangul there is none
     parts = normalize("NFD", character) if not pair or pair[0] == "<" else [chr(int(c, 16)) for c in pair.split()]
@@ -162,7 +177,7 @@ def _spelled(source: Source, character: str) -> str:
     return "".join(_spelled(source, part) for part in parts)
 
 
-def _has_variation(source: Source, pair: str) -> bool:
+def _has_variation(source: Repertoire, pair: str) -> bool:
     if source.shaper is None:
         return pair in source.variations
     return source.shaper.get_variation_glyph(ord(pair[0]), ord(pair[1])) is not None

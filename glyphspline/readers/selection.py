@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from ..errors import GlyphsplineError
-from .clusters import clusters, glyphs_of
-
-if TYPE_CHECKING:
-    from .source import Source
+from .clusters import Repertoire, clusters, glyphs_of
 
 Request: TypeAlias = int | str | Iterable[int | str]
 """Numbers: one or several ints, or strings of numbers and ranges such as ``"U+4E00-4E10,9F8D"`` or ``"5,10-20"``."""
@@ -68,7 +65,7 @@ class Selection(tuple[str, ...]):
 
 
 def select(
-    source: Source,
+    source: Repertoire,
     text: str | None,
     unicodes: Request | None,
     glyphs: str | Iterable[str] | None,
@@ -133,7 +130,7 @@ class Characters:
         alone: glyph name to the first character that it shows alone. composed: character to several glyphs.
     """
 
-    def __init__(self, source: Source, asked: Iterable[str]) -> None:
+    def __init__(self, source: Repertoire, asked: Iterable[str]) -> None:
         self.names: dict[str, None] = {}
         self.missing: list[str] = []
         self.alone: dict[str, str] = {}
