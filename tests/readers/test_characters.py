@@ -39,6 +39,8 @@ def test_a_selector_chooses_a_variation_and_what_there_is_none_of_is_said(tmp_pa
     found = font.select(text="葛\U000e0102")
     assert found == ("katsu",)
     assert found.missing == ("U+845B U+E0102",)
+    assert "U+845B U+E0102" in gs.layout(font, "葛\U000e0102").notes[0]
+    assert gs.layout(font, "葛\U000e0100\u2764\ufe0f").notes == ()
     assert font.select(text="\u2764\ufe0f").missing == ()  # as a heart is copied from anywhere
     assert font.select(text="龍\U000e0100").missing == ("U+9F8D",)
 

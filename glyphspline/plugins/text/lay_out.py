@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import OptionError, require
 from ...readers import Source
 from ...readers.characters import END, Feature, HarfBuzzShaper, PlainShaper, Run, Shaped, Shaper, check_features
+from ...readers.clusters import clusters, glyphs_of, is_selector
 from ...types import FloatArray
 from .paragraph import Line, Paragraph
 from .placed import Layout
@@ -86,6 +87,7 @@ def layout(
     shapers, notes = _shapers(fonts, setting)
     check_features(setting.parsed_features, [source.shaper.face for source in fonts if source.shaper is not None])
     lines: list[tuple[Paragraph, int, Line]] = []
+    notes += _unvaried(text, fonts)
     missing: dict[str, None] = {}
     for start, stop in paragraphs(text):
         paragraph = Paragraph(text[start:stop], shapers, setting, start)
@@ -152,6 +154,14 @@ def _shapers(fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], l
         shapers.append(PlainShaper(source, scale))
         notes.append(f"{source.path.name} is not shaped: no kerning, ligatures or joined letters in {source.format}")
     return shapers, notes
+
+
+def _unvaried(text: str, fonts: Sequence[Source]) -> Iterator[str]:
+    """Notes of variations that no font has."""
+    for cluster in dict.fromkeys(clusters(text) if any(map(is_selector, text)) else ()):
+        if is_selector(cluster[-1]) and all(glyphs_of(source, cluster).unvaried for source in fonts):
+            codes = " ".join([f"U+{ord(character):04X}" for character in cluster])
+            yield f"no variation {codes} in the font: it stands there without the selector"
 
 
 def _extents(font: Source, setting: Setting) -> tuple[float, float, float]:
