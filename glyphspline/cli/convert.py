@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -126,12 +127,18 @@ def convert_fonts(fonts: Sequence[Path], call: Conversion, executor: Executor, a
 
 
 def chosen(source: Source, subset: opt.Subset, quiet: bool, name: str | None = None) -> Selection:
-    """The glyphs that are asked for; what is not in the font is named, with the ``name`` of one font of several.
+    """The glyphs that are asked for, with the ``name`` of one font of several in what is said of them.
+
+    Said is what is not in the font, and what is shown by several glyphs.
 
     The command ends if there are none of them in a font alone.
     """
     names = subset.of(source)
-    say_missing(() if quiet else names.missing, f"{name}: " if name else "")
+    before = f"{name}: " if name else ""
+    say_missing(() if quiet else names.missing, before)
+    if names.composed and not quiet:
+        composed = [f"{character} ({', '.join(of)})" for character, of in islice(names.composed.items(), 10)]
+        say(f"{before}drawn by several glyphs: {listed(composed, len(names.composed))}")
     if name is None and not names:
         stop("none of the glyphs asked for is in the font")
     return names

@@ -139,8 +139,8 @@ def runs_facts(runs: Sequence[FontRun]) -> dict[str, Any]:
 
 
 def with_character(phrase: str) -> str:
-    """A code point, "U+9F8D", with its character; other phrases as they are."""
+    """Code points, "U+9F8D", with their character; other phrases as they are."""
     if not phrase.startswith("U+") or "-" in phrase:
         return phrase
-    character = chr(int(phrase[2:], 16))
-    return f"{phrase} {character}" if character.isprintable() and not character.isspace() else phrase
+    character = "".join([chr(int(code[2:], 16)) for code in phrase.split()])
+    return f"{phrase} {character}" if character[0].isprintable() and not character.isspace() else phrase

@@ -7,21 +7,17 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
-from unicodedata import normalize
 
 import numpy as np
 import uharfbuzz as hb
 
 from ..errors import GlyphsplineError, OptionError, require
 from ..types import FloatArray, IntArray
-from . import Source
+from .clusters import clusters, glyphs_of
+from .source import Source
 
 CONTEXT = 8
 """Characters before and after a run that HarfBuzz sees; it looks at five."""
-
-SPACES = frozenset("\t\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000")
-"""What HarfBuzz makes of the space where a font lacks it."""
-
 
 FEATURE = re.compile(r"([+-]?)([ -~]{4})(?:\[(\d*)(?:(:)(\d*))?\])?(?:=(\d{1,9}|on|off))?")
 END = 2**32 - 1
@@ -157,13 +153,15 @@ class Shaper(ABC):
             Glyphs along a horizontal line, or, for "ttb" and "btt", a vertical one.
         """
 
-    @abstractmethod
     def has(self, cluster: str) -> bool:
         """Whether the font has glyphs for all of a grapheme cluster, or needs none."""
+        return not self.lacking(cluster)
 
-    def lacking(self, cluster: str) -> list[str]:
+    def lacking(self, cluster: str) -> tuple[str, ...]:
         """The characters of a grapheme cluster that have no glyph."""
-        return [] if self.has(cluster) else [character for character in cluster if not self.has(character)]
+        if all(ord(character) in self.source.cmap for character in cluster):
+            return ()
+        return glyphs_of(self.source, cluster.replace("\t", " ")).missing
 
 
 class HarfBuzzShaper(Shaper):
@@ -196,46 +194,36 @@ class HarfBuzzShaper(Shaper):
         positions = np.array([p.position for p in buffer.glyph_positions], dtype=np.float64).reshape(-1, 4) * self.scale
         return Shaped(numbers[:, 0], numbers[:, 1] + first, positions[:, 2:], positions[:, :2])
 
-    def has(self, cluster: str) -> bool:
-        """See :meth:`Shaper.has`. HarfBuzz knows other forms of a cluster, and what a font may lack."""
-        if all(ord(character) in self.source.cmap for character in cluster):
-            return True
-        self._buffer.reset()
-        self._buffer.add_str(cluster.replace("\t", " "))
-        self._buffer.guess_segment_properties()
-        hb.shape(self.source.shaper, self._buffer)
-        return all(info.codepoint for info in self._buffer.glyph_infos)
-
 
 class PlainShaper(Shaper):
-    """A source without tables for shaping, such as a UFO: a glyph a character, one after the other.
+    """A source without tables for shaping, such as a UFO: the glyphs of each character, one after the other."""
 
-    Args:
-        text: all that is going to be shaped.
-    """
-
-    def __init__(self, source: Source, scale: float, text: str) -> None:
+    def __init__(self, source: Source, scale: float) -> None:
         super().__init__(source, scale)
-        gids = sorted({self._glyph(ord(character)) for character in text} - {-1})
-        outlines = source.outlines(gids, errors="return")
-        self._advances = {gid: getattr(outline, "advance", 0.0) for gid, outline in zip(gids, outlines, strict=True)}
+        self._advances: dict[int, float] = {}
 
     def shape(self, codes: Sequence[int], run: Run, direction: str, origin: int) -> Shaped:
         """See :meth:`Shaper.shape`."""
-        found = [(i, gid) for i in range(run.start, run.stop) if (gid := self._glyph(codes[i])) >= 0]
+        found, at = [], run.start
+        for cluster in clusters("".join(map(chr, codes[run.start : run.stop]))):
+            found += [(at, gid) for gid in self._gids(cluster)]
+            at += len(cluster)
         glyphs = np.array(found if direction == "ltr" else found[::-1], dtype=np.int64).reshape(-1, 2)
-        cluster, glyph = glyphs[:, 0], glyphs[:, 1]
-        advance, offset = np.zeros((2, len(glyph), 2))
-        advance[:, 0] = [self._advances[number] * self.scale for number in glyph.tolist()]
-        return Shaped(glyph, cluster, advance, offset)
+        cluster_of, gid = glyphs[:, 0], glyphs[:, 1]
+        advance, offset = np.zeros((2, len(gid), 2))
+        advance[:, 0] = [each * self.scale for each in self._advances_of(gid.tolist())]
+        return Shaped(gid, cluster_of, advance, offset)
 
-    def _glyph(self, code: int) -> int:
-        return self.source.gids.get(self._name(code) or ".notdef", -1)
+    def _gids(self, cluster: str) -> list[int]:
+        """The glyphs of a character, with .notdef, if there is one, for what is missing."""
+        names, missing, _ = glyphs_of(self.source, cluster)
+        if missing and len(cluster) > 1:
+            return [gid for character in cluster for gid in self._gids(character)]
+        gids = self.source.gids
+        return [gids[name] for name in names or ([".notdef"] if missing else []) if name in gids]
 
-    def _name(self, code: int) -> str | None:
-        return self.source.cmap.get(code) or (self.source.cmap.get(0x20) if chr(code) in SPACES else None)
-
-    def has(self, cluster: str) -> bool:
-        """See :meth:`Shaper.has`; as it is, composed or decomposed."""
-        forms = (cluster, normalize("NFC", cluster), normalize("NFD", cluster))
-        return any(all(self._name(ord(character)) for character in form) for form in forms)
+    def _advances_of(self, gids: Sequence[int]) -> list[float]:
+        unread = sorted(set(gids) - self._advances.keys())
+        outlines = self.source.outlines(unread, errors="return")
+        self._advances |= {gid: getattr(found, "advance", 0.0) for gid, found in zip(unread, outlines, strict=True)}
+        return [self._advances[gid] for gid in gids]

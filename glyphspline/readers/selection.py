@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import re
-import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple, TypeAlias
 
 from ..errors import GlyphsplineError
+from .clusters import Repertoire, clusters, glyphs_of
 
 Request: TypeAlias = int | str | Iterable[int | str]
 """Numbers: one or several ints, or strings of numbers and ranges such as ``"U+4E00-4E10,9F8D"`` or ``"5,10-20"``."""
@@ -35,29 +34,38 @@ class Selection(tuple[str, ...]):
     """Glyph names, unique: those of a text in its order, then the others in glyph index order.
 
     ``missing`` has one phrase for each item that the font does not have, in the order of the arguments: ``"U+9F99"``,
-    ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of it. ``asked`` has the arguments that
-    were given, as plain data.
+    ``"U+845B U+E0100"`` (a variation), ``"glyph foo"``, ``"gid 70000"``. A range is missing if the font has no item of
+    it. ``asked`` has the arguments that were given, as plain data.
+    ``characters`` has for a glyph the character that was asked for and that it shows alone; ``composed`` for a
+    character the glyphs that show it together.
     """
 
     missing: tuple[str, ...]
     asked: Mapping[str, Any]
+    characters: Mapping[str, str]
+    composed: Mapping[str, tuple[str, ...]]
 
     def __new__(
-        cls, names: Iterable[str] = (), missing: Iterable[str] = (), asked: Mapping[str, Any] | None = None
+        cls,
+        names: Iterable[str] = (),
+        missing: Iterable[str] = (),
+        asked: Mapping[str, Any] | None = None,
+        characters: Mapping[str, str] | None = None,
+        composed: Mapping[str, tuple[str, ...]] | None = None,
     ) -> Selection:
         """Make a selection of ``names``, which are in order."""
         selection = super().__new__(cls, names)
         selection.missing = tuple(missing)
-        selection.asked = dict(asked or {})
+        selection.asked, selection.characters = dict(asked or {}), dict(characters or {})
+        selection.composed = dict(composed or {})
         return selection
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Selection, (tuple(self), self.missing, self.asked)
+        return Selection, (tuple(self), self.missing, self.asked, self.characters, self.composed)
 
 
 def select(
-    glyph_names: Sequence[str],
-    cmap: Mapping[int, str],
+    source: Repertoire,
     text: str | None,
     unicodes: Request | None,
     glyphs: str | Iterable[str] | None,
@@ -67,9 +75,10 @@ def select(
     """The union of the glyphs that each argument selects: those of the text in its order, then by glyph index.
 
     Args:
-        glyph_names: all names in glyph index order. cmap: code point to name.
-        text: every character but line ends and other control characters.
-        unicodes: code points, hexadecimal in strings, with or without ``U+``; ``"*"`` is every one mapped.
+        source: the font.
+        text: every character of it, cut by :func:`.clusters.clusters` and found by :func:`.clusters.glyphs_of`.
+        unicodes: code points, hexadecimal in strings, with or without ``U+``, each found as a character of a text; of
+            a range, those that the font maps; ``"*"`` is every one mapped.
         glyphs: names, or one string of names between commas or spaces; ``"*"`` is every glyph.
         gids: glyph indices, decimal in strings; ``"*"`` is every glyph.
         all_glyphs: every glyph.
@@ -80,7 +89,7 @@ def select(
     if not all_glyphs and all(argument is None for argument in (text, unicodes, glyphs, gids)):
         raise GlyphsplineError("no glyphs asked for: give text, unicodes, glyphs, gids or all_glyphs")
     code_points, indices = _written(unicodes, UNICODES), _written(gids, GIDS)
-    index = {name: gid for gid, name in enumerate(glyph_names)}
+    glyph_names, index = source.glyph_names, source.gids
     found: set[str] = set(glyph_names) if all_glyphs else set()
     missing: list[str] = []
 
@@ -90,9 +99,15 @@ def select(
         if not known:
             missing.append(phrase)
 
-    codes = [ord(character) for character in dict.fromkeys(text or "") if unicodedata.category(character) != "Cc"]
-    for first, last in chain(zip(codes, codes, strict=True), _ranges(code_points, UNICODES)):
-        take(_within(cmap, first, last), f"U+{first:04X}" if first == last else f"U+{first:04X}-{last:04X}")
+    of_text = Characters(source, dict.fromkeys(clusters(text or "")))
+    ranges = list(_ranges(code_points, UNICODES))
+    single = Characters(source, dict.fromkeys(chr(first) for first, last in ranges if first == last))
+    missing += [*of_text.missing, *single.missing]
+    found.update(single.names)
+    for first, last in ranges:
+        if first < last:
+            mapped = Characters(source, map(chr, _within(source.cmap, first, last)))
+            take(mapped.names, f"U+{first:04X}-{last:04X}")
     names = glyphs.replace(",", " ").split() if isinstance(glyphs, str) else None if glyphs is None else list(glyphs)
     for name in names or ():
         take(glyph_names if name == "*" else [name], f"glyph {name}")
@@ -100,16 +115,43 @@ def select(
         take(glyph_names[first : last + 1], f"gid {first}" if first == last else f"gid {first}-{last}")
     given = {"text": text, "unicodes": code_points, "glyphs": names, "gids": indices}
     asked = {name: value for name, value in given.items() if value is not None} | ({"all": True} if all_glyphs else {})
-    ahead = dict.fromkeys(cmap[code] for code in codes if cmap.get(code) in index)
-    rest = sorted(found.difference(ahead), key=index.__getitem__)
-    return Selection([*ahead, *rest], dict.fromkeys(missing), asked)
+    rest = sorted(found.difference(of_text.names), key=index.__getitem__)
+    return Selection(
+        [*of_text.names, *rest], dict.fromkeys(missing), asked, single.alone | of_text.alone,
+        single.composed | of_text.composed,
+    )  # fmt: skip
 
 
-def _within(cmap: Mapping[int, str], first: int, last: int) -> list[str]:
-    """Names of the code points first to last; the loop runs over the shorter of the range and the map."""
+class Characters:
+    """The glyphs of characters that are asked for.
+
+    Attributes:
+        names: of all of them, in order, without repeats. missing: phrases for what the source does not have.
+        alone: glyph name to the first character that it shows alone. composed: character to several glyphs.
+    """
+
+    def __init__(self, source: Repertoire, asked: Iterable[str]) -> None:
+        self.names: dict[str, None] = {}
+        self.missing: list[str] = []
+        self.alone: dict[str, str] = {}
+        self.composed: dict[str, tuple[str, ...]] = {}
+        for cluster in asked:
+            shown = glyphs_of(source, cluster)
+            for name in shown.names:
+                self.names[name] = None
+            for one in shown.missing + shown.unvaried:
+                self.missing.append(" ".join([f"U+{ord(character):04X}" for character in one]))
+            if len(shown.names) == 1:
+                self.alone.setdefault(shown.names[0], cluster)
+            elif shown.names and not shown.missing:
+                self.composed[cluster] = shown.names
+
+
+def _within(cmap: Mapping[int, str], first: int, last: int) -> list[int]:
+    """Code points that are mapped, from first to last; the loop runs over the shorter of the range and the map."""
     if last - first < len(cmap):
-        return [cmap[code] for code in range(first, last + 1) if code in cmap]
-    return [name for code, name in cmap.items() if first <= code <= last]
+        return [code for code in range(first, last + 1) if code in cmap]
+    return [code for code in cmap if first <= code <= last]
 
 
 def _written(request: Request | None, kind: Numbers) -> list[str] | None:

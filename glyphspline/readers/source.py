@@ -46,7 +46,8 @@ class Source(ABC):
         family, style: never empty.
         metrics: units per em, ascender and descender.
         glyph_names: every glyph, unique, in glyph index order.
-        cmap: code point to glyph name.
+        cmap: code point to glyph name. variations: base and selector, two characters, to glyph name; of a font file
+            the shaper knows them.
         shaper: HarfBuzz's font at the location, to shape text with; None for a source without tables for shaping.
         each_its_em: whether each glyph has an em of its own.
         outer: the direction in which outer contours run by the rules of the format: 1 counter-clockwise (PostScript),
@@ -61,6 +62,7 @@ class Source(ABC):
     location: Mapping[str, float] = MappingProxyType({})
     axes: tuple[DesignAxis, ...] = ()
     instances: Mapping[str, Mapping[str, float]] = MappingProxyType({})
+    variations: Mapping[str, str] = MappingProxyType({})
     shaper: Any = None
     outer: int = 0
     each_its_em: bool = False
@@ -163,6 +165,10 @@ class Source(ABC):
                     log.warning("%s: axis %s goes from %s: %g taken for %g", self.path, axis.tag, limits, value, wanted)
         return MappingProxyType(within)
 
+    def at_location(self, names: Sequence[str]) -> tuple[str, ...]:
+        """The glyphs that stand for glyphs at the location by the rules of a source without tables for shaping."""
+        return tuple(names)
+
     def read(self, heads: Sequence[Head]) -> list[OutlineOrError]:
         """Read glyphs of this source; the result has an error in place of each broken glyph."""
         return [attempt(self.path, head.name, partial(self._outline, head)) for head in heads]
@@ -263,7 +269,7 @@ class Source(ABC):
             FontError: no argument is given, or a string is not a list of numbers.
         """
         try:
-            return select(self.glyph_names, self.cmap, text, unicodes, glyphs, gids, all_glyphs)
+            return select(self, text, unicodes, glyphs, gids, all_glyphs)
         except GlyphsplineError as error:
             raise FontError(error.message, font=str(self.path)) from error
 

@@ -20,9 +20,10 @@ from ..errors import FontError
 from ..outlines.outline import FontMetrics, Outline
 from ..types import Head
 from .pens import ContourPen
-from .source import Source, first_claims, parsed
+from .source import Source, first_claims, opening, parsed
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
+VARIATIONS_KEY = "public.unicodeVariationSequences"
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class Ufo(EditableSource):
         metrics: units per em, ascender and descender.
         glyph_names: in the order of ``public.glyphOrder``, then the rest by name. Glyphs of
             ``public.skipExportGlyphs`` are left out; they may still be components.
-        cmap: code point to the first glyph that has it.
+        cmap: code point to the first glyph that has it. variations: those of ``public.unicodeVariationSequences``.
         default_layer: the glyphs of the default layer. lib: that of the font.
     """
 
@@ -103,6 +104,17 @@ class Ufo(EditableSource):
     def cmap(self) -> Mapping[int, str]:  # type: ignore[override]
         """Code point to the first glyph that has it."""
         return first_claims((name, self._claims(name)) for name in self.glyph_names)
+
+    @cached_property
+    def variations(self) -> Mapping[str, str]:  # type: ignore[override]
+        """Base and selector to glyph name."""
+        with opening(self.path, self.kind):
+            return {
+                chr(int(base, 16)) + chr(int(selector, 16)): name
+                for selector, of_base in self.lib.get(VARIATIONS_KEY, {}).items()
+                for base, name in of_base.items()
+                if name in self.gids
+            }
 
     def _bytes(self) -> Iterable[bytes]:
         for file in _files(self.path):

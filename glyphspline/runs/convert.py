@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ..curves.curvature import Comb, shared_scale
@@ -16,7 +17,7 @@ from ..errors import OutputError
 from ..extras import need
 from ..files import remove_partials, writing
 from ..fitting.results import GlyphResult, as_glyph
-from ..readers import Source
+from ..readers import Selection, Source
 from ..report import FOLDER as GALLERY
 from ..report.gallery import is_whole, write_index, write_report
 from ..types import Names
@@ -148,7 +149,7 @@ def convert_font(
         # Workers start while the tasks are listed; none do if all glyphs are finished.
         expected = len({*glyphs}.difference([source.glyph_names[gid] for gid in finished]))
         with workers(jobs if expected else 0, spec.limits.seconds, spec.kinds, expected, executor=executor) as pool:
-            tasks = tasks_of(source, glyphs, spec.names)
+            tasks = tasks_of(source, glyphs, spec.names, progress.stems)
             left = [task for task in tasks if task.head.gid not in finished]
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
             settle(job, left, pool, len(left))  # before the scale, which is of a sample
@@ -188,11 +189,14 @@ def require_libraries(spec: RunSpec) -> None:
         need(extra)
 
 
-def tasks_of(source: Source, glyphs: Sequence[str], names: Names = "glyph") -> list[Task]:
-    """A task for each glyph, in glyph index order."""
+def tasks_of(
+    source: Source, glyphs: Sequence[str], names: Names = "glyph", stems: Mapping[int, str] = MappingProxyType({})
+) -> list[Task]:
+    """A task for each glyph, in glyph index order; ``stems`` are the names of files that are there, by glyph index."""
     heads = list(heads_of(source, glyphs).values())
-    stems = file_names(source.glyph_names, names, source.cmap, [head.gid for head in heads])
-    return list(map(Task, heads, stems))
+    asked = glyphs.characters if isinstance(glyphs, Selection) else {}
+    found = file_names(source.glyph_names, names, source.cmap, [head.gid for head in heads], asked, stems)
+    return list(map(Task, heads, found))
 
 
 def with_scale(job: ConvertJob, source: Source, glyphs: Sequence[str], tasks: list[Task], pool: Executor) -> ConvertJob:

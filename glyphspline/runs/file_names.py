@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import chain
 from itertools import count as count_from
 from pathlib import Path
+from types import MappingProxyType
+from unicodedata import category, normalize
 
+from ..readers.clusters import unified
 from ..types import Names
 
 LONGEST_NAME = 150
@@ -31,43 +33,68 @@ def file_names(
     names: Names = "glyph",
     cmap: Mapping[int, str] | None = None,
     chosen: Sequence[int] | None = None,
+    asked: Mapping[str, str] = MappingProxyType({}),
+    held: Mapping[int, str] = MappingProxyType({}),
 ) -> list[str]:
     """A file name, without suffix, for each chosen glyph; no two of a font are alike without regard to case.
 
-    They depend on all glyphs of the font, in order, not on which of them are chosen.
+    They depend on all glyphs of the font, in order, not on which of them are chosen; but a glyph that was asked for by
+    another character than the one it is usually called by is called by that.
 
     Args:
         glyph_names: of all glyphs of the font.
-        names: "glyph", the glyph's name; "unicode", its first code point, as in ``uni9F8D``; "gid", its index; "char",
-            its first character. Glyphs without a code point keep their names.
+        names: "glyph", the glyph's name; "unicode", its code point, as in ``uni9F8D``; "gid", its index; "char", its
+            character. Glyphs without a code point keep their names; of several it is :func:`.clusters.unified`.
         cmap: code point to glyph name.
         chosen: glyph indices; None: all.
+        asked: glyph name to the character that was asked for. Another glyph that has its code point, and does not show
+            it where the font is read, keeps its name.
+        held: names that glyphs have already, by glyph index.
     """
     chosen = range(len(glyph_names)) if chosen is None else chosen
     if names == "gid":
         return [f"{gid:05}" for gid in chosen]
-    wanted = list(glyph_names)
+    wanted, ahead = list(glyph_names), set[int]()
     if names != "glyph" and cmap is not None:
-        first = {cmap[code]: code for code in sorted(cmap, reverse=True)}
-        named = _uni if names == "unicode" else _char
-        wanted = [named(first[name]) if name in first else name for name in wanted]
+        wanted, ahead = _by_character(glyph_names, _uni if names == "unicode" else _char, cmap, asked)
     # Names that can be taken as they are stay so; of the others, and of those that clash, the UFO rule makes names.
     keys = list(map(_key, wanted))
-    counts = Counter(keys)
+    counts, counts_ahead = Counter(keys), Counter([keys[gid] for gid in ahead])
 
     def stays(gid: int) -> bool:
-        return counts[keys[gid]] == 1 and _is_plain(wanted[gid], keys[gid])
+        return (counts_ahead if gid in ahead else counts)[keys[gid]] == 1 and _is_plain(wanted[gid], keys[gid])
 
     if not all(map(stays, chosen)):  # then names depend on what is taken, and on those made before
         staying = list(map(stays, range(len(wanted))))
         taken = {key for key, stay in zip(keys, staying, strict=True) if stay}
         wanted = [name if stay else _by_rule(name, taken) for name, stay in zip(wanted, staying, strict=True)]
-    return [wanted[gid] for gid in chosen]
+    if not held:
+        return [wanted[gid] for gid in chosen]
+    taken = set(map(_key, held.values()))
+    return [held.get(gid) or _free(wanted[gid], "_", taken) for gid in chosen]
+
+
+def _by_character(
+    glyph_names: Sequence[str], named: Callable[[int], str], cmap: Mapping[int, str], asked: Mapping[str, str]
+) -> tuple[list[str], set[int]]:
+    """The names that glyphs are to have by their characters; which of them have another than the unified one."""
+    codes: dict[str, list[int]] = {}
+    for code, name in cmap.items():
+        codes.setdefault(name, []).append(code)
+    usual = {name: chr(of_name[0] if len(of_name) == 1 else unified(of_name)) for name, of_name in codes.items()}
+    other = {name: one for name, c in asked.items() if (one := normalize("NFC", c)) != usual.get(name)}
+    seen = {character: name for name, character in other.items()}
+    characters = usual | other
+    wanted = list(glyph_names)
+    for gid, name in enumerate(glyph_names):
+        if (character := characters.get(name)) and seen.get(character, name) == name:
+            wanted[gid] = "-".join([named(ord(each)) for each in character])
+    return wanted, {gid for gid, name in enumerate(glyph_names) if name in other}
 
 
 def _key(name: str) -> str:
     """What file systems compare: some ignore case, some how accents are composed."""
-    return name.lower() if name.isascii() else unicodedata.normalize("NFKC", name).casefold()
+    return name.lower() if name.isascii() else normalize("NFC", name).casefold()
 
 
 def _is_plain(name: str, key: str) -> bool:
@@ -77,7 +104,7 @@ def _is_plain(name: str, key: str) -> bool:
 
 
 def _is_seen(character: str) -> bool:
-    return unicodedata.category(character)[0] in "LNPS"
+    return category(character)[0] in "LNPS"
 
 
 def _by_rule(name: str, taken: set[str]) -> str:

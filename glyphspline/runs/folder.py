@@ -35,7 +35,7 @@ from ..report.gallery import Gallery, remove_gallery
 from ..types import Head
 from .engine import Job, Observer, Part, run
 from .record import RECORD, Entry, Record, open_record, remove_record
-from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run
+from .spec import RUN_FILE, RunSpec, differences, is_folder, read_run, suffix_of
 from .whole_formats import TableFormat
 
 LOCK = ".lock"
@@ -151,6 +151,7 @@ class Progress:
     Attributes:
         known: glyph indices that have a line. finished: of them those that are not converted again: glyphs that failed
             are, as the cause may be gone. is_concluded: whether the run was finished.
+        stems: the names of their files, without suffix.
     """
 
     def __init__(self, out: Path, record: Record, rows: Container[int] | None = None) -> None:
@@ -160,6 +161,7 @@ class Progress:
         present: dict[str, dict[str, int]] = {}
         failed = set[int]()
         self.known = set[int]()
+        self.stems: dict[int, str] = {}
         for entry in record.entries() if record.is_open else self._of_manifest():
             facts = json.loads(entry.line)
             if not _written(out, facts["files"], entry.sizes, present):
@@ -171,6 +173,8 @@ class Progress:
                 or (not entry.batch and entry.gid in rows)
             ):
                 self.known.add(entry.gid)
+                for name, path in islice(facts["files"].items(), 1):
+                    self.stems[entry.gid] = path.rpartition("/")[2].removesuffix(suffix_of(name))
                 (failed.add if facts["status"] == "failed" else failed.discard)(entry.gid)
         self.finished = self.known - failed
 

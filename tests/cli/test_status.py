@@ -105,6 +105,23 @@ def test_contours_of_one_point_are_not_worth_a_word(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("text", "status", "said"),
+    [
+        ("e\u0301", 0, ""),  # one glyph
+        ("q\u0301", 0, "drawn by several glyphs: q\u0301 (q, acutecomb)"),
+        ("e\U000e0100", 1, "not in the font: U+0065 U+E0100"),
+        ("e\u4e00\u0301", 1, "not in the font: U+4E00"),
+    ],
+)
+def test_what_is_not_drawn_as_it_was_asked_for_is_said(text: str, status: int, said: str, tmp_path: Path) -> None:
+    call = ["convert", str(DEJAVU), "--text", text, "--step", "200", "--format", "svg", "-j", "0", "-o", str(tmp_path)]
+    result = CliRunner().invoke(app, call)
+    assert result.exit_code == status, result.output
+    assert said in result.stderr
+    assert "several" in said or "several" not in result.stderr
+
+
+@pytest.mark.parametrize(
     "call", ["convert --text 永 --format svg -j 0 -o {new}", "text 永 -o {new}.svg", "check --text 永 -j 0"]
 )
 def test_a_collection_says_which_face_is_taken(call: str, tmp_path: Path) -> None:

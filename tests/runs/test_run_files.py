@@ -14,14 +14,14 @@ import pytest
 
 from glyphspline.errors import GlyphsplineError, OutputError
 from glyphspline.fitting.options import Options
-from glyphspline.readers import Font, open_font, open_source
+from glyphspline.readers import Font, Selection, open_font, open_source
 from glyphspline.runs.convert import convert_font
 from glyphspline.runs.file_names import file_names
 from glyphspline.runs.folder import LOCK, entries_of, locked
 from glyphspline.runs.spec import RunSpec
 from glyphspline.types import Names
 from glyphspline.writers.settings import Appearance, Maps, Settings
-from tests.places import FONTS, ROOT
+from tests.places import FONTS, GYOSHO, ROOT
 
 SPEC = RunSpec(Options(step=90), ("svg",))
 
@@ -48,6 +48,25 @@ def test_files_are_called_after_what_is_asked_for(names: Names, expected: list[s
     glyphs = [".notdef", "space", "A", "a", "dragon", "rare", "a.alt"]
     cmap = {0x20: "space", 0x41: "A", 0x61: "a", 0x9F8D: "dragon", 0x2FA1D: "dragon", 0x20000: "rare"}
     assert file_names(glyphs, names, cmap) == [name.replace(".notdef", "_notdef") for name in expected]
+
+
+def test_a_glyph_is_called_by_the_character_that_was_asked_for_or_the_unified_one() -> None:
+    glyphs, cmap = ["dragon", "dollar", "heavy", "A"], {0x2FD3: "dragon", 0x9F8D: "dragon", 0x24: "dollar", 0xF041: "A"}
+    assert file_names(glyphs, "char", cmap) == ["龍", "$", "heavy", "uniF041"]
+    assert file_names(glyphs, "unicode", cmap)[0] == "uni9F8D"
+    asked = {"dragon": "\u2fd3", "heavy": "$", "A": "A"}  # the dollar is not what is seen at the location
+    assert file_names(glyphs, "char", cmap, asked=asked) == ["\u2fd3", "dollar", "$", "A"]
+    assert file_names(["A", "a"], "char", {0x41: "A", 0x61: "a"}, [0], {"A": "A"}) == ["A_"]  # as the whole font
+    assert file_names(glyphs, "char", cmap, asked={"A": "葛\U000e0100"})[3] == "葛-uE_0100"
+
+
+def test_files_that_are_there_keep_their_names(tmp_path: Path) -> None:
+    """Names depend on what is asked for; another call in the same folder takes none of them."""
+    font, spec = open_font(GYOSHO), RunSpec(Options(step=90), ("svg",), names="char")
+    one = Selection(["A"], characters={"A": "B"})
+    convert_font(font, one, tmp_path, spec, jobs=0)
+    convert_font(font, tuple(font.select(text="AB")), tmp_path, spec, jobs=0)
+    assert [entry["files"] for entry in entries_of(tmp_path)] == [{"svg": "svg/B.svg"}, {"svg": "svg/B_2.svg"}]
 
 
 def test_characters_that_lead_out_of_a_folder_are_not_in_a_name() -> None:

@@ -60,8 +60,8 @@ OF_CONTOURS = {
 }
 
 OF_FONTS = {
-    "script": ("string", 'of the first character, by ISO 15924: "Latn", or "Zyyy" (common); null without one'),
-    "category": ("string", 'of the first character, by Unicode: "Lu"; null without one'),
+    "script": ("string", 'of the character asked for, or its usual one, by ISO 15924: "Latn", or "Zyyy" (common)'),
+    "category": ("string", 'of that character, by Unicode: "Lu"; null without one, as script'),
     "family": ("string", "of the name table, as the style"),
     "style": ("string", "of the name table, or of the named instance"),
     "weight": ("uint16", "of OS/2 or the location: 400 is regular"),

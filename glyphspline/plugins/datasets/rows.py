@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from typing import Any
-from unicodedata import category
+from unicodedata import category, normalize
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from ...fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import FontMetrics, Outline
 from ...outlines.sampling import CORNER_ANGLE
+from ...readers.clusters import unified
 from ...types import FloatArray, IntArray
 from .canonical_outlines import canonical_outlines
 from .columns import OF_FONTS, OF_GLYPHS, SCHEMA_VERSION, schema, type_of
@@ -153,14 +154,18 @@ def _glyph_columns(outlines: Sequence[Outline], scales: FloatArray) -> dict[str,
     return {name: need("parquet").array(value, type_of(OF_GLYPHS[name][0])) for name, value in values.items()}
 
 
-def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec) -> Any:
+def with_font(
+    table: Any, outlines: Sequence[Outline], font: FontFacts, spec: DatasetSpec, asked: Mapping[int, str | None]
+) -> Any:
     """The table with the columns of script, category and font, and one for duplicates that is not filled yet.
 
+    Script and category are of the character that was ``asked`` for, by glyph index, or else the unified one.
     Strings are plain ones, as libraries of data sets expect; files keep each distinct one once a row group.
     """
     pa, layout = need("parquet"), schema(spec, of_fonts=True)
-    first = {outline.gid: outline.unicodes[0] for outline in outlines if outline.unicodes}
-    codes = [first.get(gid) for gid in table["gid"].to_pylist()]
+    called = {outline.gid: chr(unified(outline.unicodes)) for outline in outlines if outline.unicodes}
+    called |= {gid: normalize("NFC", character)[0] for gid, character in asked.items() if character}
+    characters = [called.get(gid) for gid in table["gid"].to_pylist()]
     metrics = outlines[0].metrics if outlines else FontMetrics()  # of all in a batch: drawings have their own
     unit = 1.0 if spec.normalise == "units" else metrics.units_per_em
     values = {
@@ -169,9 +174,10 @@ def with_font(table: Any, outlines: Sequence[Outline], font: FontFacts, spec: Da
         "ascender": metrics.ascender / unit, "descender": metrics.descender / unit, "licence": font.licence,
         "split": font.split, "font": font.sha256, "face": font.face, "duplicate": None,
     }  # fmt: skip
-    columns = {name: pa.repeat(pa.scalar(value, layout.field(name).type), len(codes)) for name, value in values.items()}
+    rows = len(characters)
+    columns = {name: pa.repeat(pa.scalar(value, layout.field(name).type), rows) for name, value in values.items()}
     for name, of_character in (("script", script_of), ("category", category)):
-        columns[name] = pa.array([None if code is None else of_character(chr(code)) for code in codes], pa.string())
+        columns[name] = pa.array([character and of_character(character) for character in characters], pa.string())
     return pa.Table.from_arrays([*table.columns, *(columns[name] for name in OF_FONTS)], schema=layout)
 
 

@@ -53,7 +53,7 @@ class RowsJob(Job[Task, Made]):
         from ...runs.worker import items
 
         place = tasks[0].font.place
-        (source,), gids = sources(place), _selected(place, self.spec)
+        (source,), gids = sources(place), list(_selected(place, self.spec))
         found = list(source.outlines([gids[task.at] for task in tasks], errors="return"))
         points, most = self.spec.points or 0, LIMITS.vertices
         for k, outline in enumerate(found):
@@ -74,14 +74,15 @@ class RowsJob(Job[Task, Made]):
         good = [pair for pair in pairs if not isinstance(pair[1], GlyphsplineError)]
         failed = [(outline.name, reason(one)) for outline, one in pairs if isinstance(one, GlyphsplineError)]
         own = [outline for outline, _ in good]
-        table = with_font(table_of(own, [one for _, one in good], self.spec), own, tasks[0].font, self.spec)
+        font, asked = tasks[0].font, _selected(tasks[0].font.place, self.spec)
+        table = with_font(table_of(own, [one for _, one in good], self.spec), own, font, self.spec, asked)
         return Made(streamed(table), len(good), failed)
 
     def failed(self, task: Task, error: Exception) -> Made:
         """No rows. The name of the glyph is that of the font, if it can be opened here."""
         place = task.font.place
         try:
-            name = sources(place)[0].glyph_names[_selected(place, self.spec)[task.at]]
+            name = sources(place)[0].glyph_names[list(_selected(place, self.spec))[task.at]]
         except (GlyphsplineError, IndexError):  # the file has been changed or removed
             name = f"#{task.at}"
         return Made(b"", 0, [(name, reason(error))])
@@ -92,7 +93,7 @@ class RowsJob(Job[Task, Made]):
 
 
 @lru_cache(maxsize=1)
-def _selected(place: Place, spec: DatasetSpec) -> list[int]:
+def _selected(place: Place, spec: DatasetSpec) -> dict[int, str | None]:
     return selected(sources(place)[0], spec)
 
 

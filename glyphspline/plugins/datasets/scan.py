@@ -11,6 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...errors import GlyphsplineError
+from ...readers.clusters import clusters, glyphs_of
+from ...readers.selection import Characters
 from ...runs.engine import Job, reason
 from ...runs.schedule import Place
 from .spec import DatasetSpec
@@ -126,6 +128,7 @@ def _faces(path: Path, spec: DatasetSpec) -> Iterator[FontFacts]:
 def facts_of(source: Source, spec: DatasetSpec) -> Iterator[FontFacts]:
     """The facts of an opened font, at each location where glyphs are taken."""
     from ...readers import Font
+    from ...readers.open import reopened
 
     tables = source.tables() if isinstance(source, Font) else None
     shared = {"Zyyy", "Zinh", "Zzzz"}  # common, inherited and unknown
@@ -143,16 +146,20 @@ def facts_of(source: Source, spec: DatasetSpec) -> Iterator[FontFacts]:
     for style, location in (named or {source.style: default}).items():
         at = {**default, **location}
         place = ",".join(f"{tag}={value:g}" for tag, value in at.items()) or None
+        taken = facts.taken
+        if taken and at != default and (spec.characters or spec.scripts):  # other glyphs may show them there
+            taken = len(selected(reopened(source.path, source.face_index, at), spec))
         yield replace(
-            facts, style=style, location=place, at=() if at == default else tuple(at.items()), **_classes(tables, at)
-        )
+            facts, style=style, location=place, at=() if at == default else tuple(at.items()), taken=taken,
+            **_classes(tables, at),
+        )  # fmt: skip
 
 
 def chosen(facts: FontFacts, source: Source, spec: DatasetSpec) -> FontFacts:
     """The facts with what the filters say of the font: how many of its glyphs are taken, or why none are."""
-    asked = set(map(ord, spec.characters))
-    if asked:
-        facts = replace(facts, coverage=len(asked & source.cmap.keys()) / len(asked))
+    if asked := set(clusters(spec.characters)):
+        there = [cluster for cluster in asked if not glyphs_of(source, cluster).missing]
+        facts = replace(facts, coverage=len(there) / len(asked))
     if spec.licences and facts.licence not in spec.licences:
         return replace(facts, status="left out", reason=f"its licence is {facts.licence}")
     if facts.coverage is not None and facts.coverage < spec.coverage:
@@ -206,14 +213,18 @@ def script_of(character: str) -> str:
     return str(script(character))
 
 
-def selected(source: Source, spec: DatasetSpec) -> list[int]:
-    """Indices of the glyphs that are asked for, ascending; without a filter all, those without a character too."""
+def selected(source: Source, spec: DatasetSpec) -> dict[int, str | None]:
+    """The glyphs that are asked for by index, ascending, each with the character asked for, if it shows that alone.
+
+    Without a filter they are all, those without a character too.
+    """
     if not (spec.characters or spec.scripts):
-        return list(range(len(source.glyph_names)))
-    asked = set(map(ord, spec.characters))
-    codes = [code for code in source.cmap if not asked or code in asked]
-    names = {source.cmap[code] for code in codes if not spec.scripts or script_of(chr(code)) in spec.scripts}
-    return [gid for gid, name in enumerate(source.glyph_names) if name in names]
+        return dict.fromkeys(range(len(source.glyph_names)))
+    asked = clusters(spec.characters) if spec.characters else map(chr, source.cmap)
+    found = Characters(source, [c for c in dict.fromkeys(asked) if not spec.scripts or script_of(c[0]) in spec.scripts])
+    alone = found.alone if spec.characters else {}
+    gids = sorted(source.gids[name] for name in found.names)
+    return {gid: alone.get(source.glyph_names[gid]) for gid in gids}
 
 
 def split_of(family: str, spec: DatasetSpec) -> str:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument
+from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument, processRules
 from fontTools.pens.pointPen import PointToSegmentPen
 from fontTools.pens.recordingPen import RecordingPen
 from fontTools.ufoLib.glifLib import GlyphSet
@@ -92,7 +92,15 @@ class Designspace(EditableSource):
         self.folders = [ufo.path for ufo in self._ufos]
         self.family, self.style, self.metrics = at_default.family, at_default.style, at_default.metrics
         self.cmap, self.glyph_names = at_default.cmap, at_default.glyph_names
+        self.variations = at_default.variations
+        self._rules = document.rules
+        self._place = {a.name: a.map_forward(self.location.get(a.tag, a.default)) for a in document.axes}
         self._components: dict[str, tuple[Masters, list[int | None]]] = {}
+
+    def at_location(self, names: Sequence[str]) -> tuple[str, ...]:
+        """See :meth:`.Source.at_location`: by the rules of the designspace."""
+        found = processRules(self._rules, self._place, list(names))
+        return tuple([new if new in self.gids else old for old, new in zip(names, found, strict=True)])
 
     def _bytes(self) -> Iterable[bytes]:
         return self.path.read_bytes(), *(ufo.sha256.encode() for ufo in self._ufos)

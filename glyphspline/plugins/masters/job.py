@@ -195,11 +195,11 @@ def convert_font_masters(
     if axis is None and "ttf" in spec.formats and isinstance(first, Font):  # its composites stay composites
         from .variable_font import components, flavour_of
 
-        wanted = list(dict.fromkeys([*glyphs, *components(first, tuple(glyphs))]))
+        wanted: Sequence[str] = list(dict.fromkeys([*glyphs, *components(first, tuple(glyphs))]))
         if in_quadratics(spec) and flavour_of(first) != "ttf":
             wanted = list(first.glyph_names)  # they all become quadratics
     else:
-        wanted = list(glyphs)
+        wanted = glyphs
     summary = MastersSummary()
     run = describe(first, spec, glyphs, None, sources[1:], axis)
     with progress_of(out, spec, run, restart) as progress:
@@ -208,7 +208,8 @@ def convert_font_masters(
         if "ttf" in spec.formats and not in_quadratics(spec):
             options = replace(options, tolerance=SHARE * options.tolerance_for(first.metrics.units_per_em))
         job = MastersJob(out.absolute(), spec, places=tuple(map(place_of, sources)), axis=axis, options=options)
-        left = [task for task in tasks_of(first, wanted, spec.names) if task.head.gid not in progress.finished]
+        tasks = tasks_of(first, wanted, spec.names, progress.stems)
+        left = [task for task in tasks if task.head.gid not in progress.finished]
         for _ in progress.advance(job, left, executor, observer):
             pass
         for name in spec.folders:

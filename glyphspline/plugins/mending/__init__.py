@@ -11,7 +11,7 @@ PLUGIN = Plugin(
     commands={
         "mend": Listed(
             ".command:mend",
-            "Mend what check finds in sources: points move as little as it takes, in all masters. None comes.",
+            "Mend what check finds in sources: points move as little as it takes, in all masters.",
         )
     },
     work={"mending": ".work:mending"},

@@ -61,7 +61,7 @@ def mend(
     out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,
     dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
 ) -> bool:
-    """Mend what check finds in sources: points move as little as it takes, in all masters. None comes.
+    """Mend what check finds in sources: points move as little as it takes, in all masters.
 
     Kinks are mended unless other kinds are asked for, so that joints meant to be smooth kink nowhere along an axis.
     Points go only where short, straight and repeated are asked for. What would move outlines by more than the

@@ -12,6 +12,7 @@ import numpy as np
 from ...errors import OptionError, require
 from ...readers import Source
 from ...readers.characters import END, Feature, HarfBuzzShaper, PlainShaper, Run, Shaped, Shaper, check_features
+from ...readers.clusters import clusters, glyphs_of, is_selector
 from ...types import FloatArray
 from .paragraph import Line, Paragraph
 from .placed import Layout
@@ -83,9 +84,10 @@ def layout(
     fonts = (font, *fallbacks)
     for each in fonts:
         require(isinstance(each, Source), "a font is a source that open_font or open_source returns", each)
-    shapers, notes = _shapers(text, fonts, setting)
+    shapers, notes = _shapers(fonts, setting)
     check_features(setting.parsed_features, [source.shaper.face for source in fonts if source.shaper is not None])
     lines: list[tuple[Paragraph, int, Line]] = []
+    notes += _unvaried(text, fonts)
     missing: dict[str, None] = {}
     for start, stop in paragraphs(text):
         paragraph = Paragraph(text[start:stop], shapers, setting, start)
@@ -137,7 +139,7 @@ def paragraphs(text: str) -> Sequence[tuple[int, int]]:
     return list(zip(starts, stops, strict=True))
 
 
-def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], list[str]]:
+def _shapers(fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], list[str]]:
     shapers: list[Shaper] = []
     notes = []
     features = (*(APART if setting.letter_spacing else ()), *setting.parsed_features)
@@ -149,9 +151,17 @@ def _shapers(text: str, fonts: Sequence[Source], setting: Setting) -> tuple[list
         if setting.vertical or setting.features:
             what = "vertical text" if setting.vertical else "features"
             raise OptionError(f"{source.path}: {what} needs a font file: {source.format} has no tables for shaping")
-        shapers.append(PlainShaper(source, scale, text))
+        shapers.append(PlainShaper(source, scale))
         notes.append(f"{source.path.name} is not shaped: no kerning, ligatures or joined letters in {source.format}")
     return shapers, notes
+
+
+def _unvaried(text: str, fonts: Sequence[Source]) -> Iterator[str]:
+    """Notes of variations that no font has."""
+    for cluster in dict.fromkeys(clusters(text) if any(map(is_selector, text)) else ()):
+        if is_selector(cluster[-1]) and all(glyphs_of(source, cluster).unvaried for source in fonts):
+            codes = " ".join([f"U+{ord(character):04X}" for character in cluster])
+            yield f"no variation {codes} in the font: it stands there without the selector"
 
 
 def _extents(font: Source, setting: Setting) -> tuple[float, float, float]:

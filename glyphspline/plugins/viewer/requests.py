@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args
 from ...errors import GlyphsplineError, is_number, require, require_choice
 from ...fitting.options import PRESETS, Options
 from ...readers import Font
+from ...readers.clusters import unified
 
 Sampling = Literal["tolerance", "step", "count"]
 
@@ -89,11 +90,8 @@ def _moved(moved: Any) -> Moved:
 def search(font: Font, words: str) -> dict[str, Any]:
     """The first glyphs that match; without words, the first that have a character."""
     found = list(islice(_matches(font, words.strip()), SHOWN))
-    names = dict.fromkeys(found, "")
-    for code, name in font.cmap.items():
-        if name in names:
-            names[name] = names[name] or chr(code)
-    listed = [{"name": name, "text": text} for name, text in names.items()]
+    codes = {name: font.unicodes.get(name) for name in found}
+    listed = [{"name": name, "text": chr(unified(of_name)) if of_name else ""} for name, of_name in codes.items()]
     return {"glyphs": listed, "more": len(found) == SHOWN}
 
 
@@ -112,5 +110,5 @@ def _matches(font: Font, words: str) -> Iterator[str]:
     if words in names:
         yield words
     if len(words) == 1 or not words.isascii():  # several letters of ASCII are a name, as in the gallery
-        yield from (cmap[ord(character)] for character in words if not character.isspace() and ord(character) in cmap)
+        yield from font.select(text="".join(words.split()))
     yield from (name for name in names if words.lower() in name.lower())

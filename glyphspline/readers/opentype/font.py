@@ -39,8 +39,10 @@ FAMILY, STYLE = (21, 16, 1), (22, 17, 2)
 MOST_FACES = 1000
 """Limit of faces of a collection: each takes four bytes of a hostile file, and the time of a font."""
 
-UNICODE_CMAPS = frozenset({(3, 10), (3, 1), *((0, encoding) for encoding in (0, 1, 2, 3, 4, 6))})
-"""Platforms and encodings of the tables of characters that a font is read by."""
+SYMBOLS, MAC_ROMAN = (3, 0), (1, 0)
+UNICODE_CMAPS = ((3, 10), (0, 6), (0, 4), (3, 1), (0, 3), (0, 2), (0, 1), (0, 0))
+"""Platforms and encodings of the tables of characters that a font is read by: as HarfBuzz, by the one of symbols where
+there is one, or else the best for Unicode, or else the one of the Macintosh."""
 
 
 class Font(Source):
@@ -51,7 +53,8 @@ class Font(Source):
         family, style: from the name table; by default the file's name and "Regular".
         metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
         glyph_names: all glyphs in glyph index order, made unique where the font repeats a name or has none.
-        cmap: code point to glyph name, from the best Unicode table; empty if there is none.
+        cmap: code point to glyph name, from the table that HarfBuzz reads. Symbols have code points from U+F000 on;
+            texts may ask for them by those from U+0000, too.
     """
 
     def __init__(self, path: Path, data: bytes, face_index: int, location: Location) -> None:
@@ -114,9 +117,7 @@ class Font(Source):
         names, tables = self.gids, self._tables
         with opening(self.path):
             check_characters(tables.reader["cmap"] if "cmap" in tables else b"")
-            return MappingProxyType(
-                {code: name for code, name in (tables.getBestCmap() or {}).items() if name in names}
-            )
+            return MappingProxyType({code: name for code, name in characters_of(tables).items() if name in names})
 
     @property
     def num_glyphs(self) -> int:
@@ -135,7 +136,8 @@ class Font(Source):
         with opening(self.path):
             cmap = self._tables.reader["cmap"] if "cmap" in self._tables else bytes(4)
             tables = {struct.unpack_from(">HH", cmap, 4 + 8 * k) for k in range(struct.unpack_from(">H", cmap, 2)[0])}
-        return self._face.face.glyph_count, len(self._face.face.unicodes) if tables & UNICODE_CMAPS else 0
+        has_unicodes = tables & {SYMBOLS, *UNICODE_CMAPS}
+        return self._face.face.glyph_count, len(self._face.face.unicodes) if has_unicodes else len(self.cmap)
 
     def _bytes(self) -> Iterable[bytes]:
         return (self._data,)
@@ -185,6 +187,16 @@ def unused(name: str, taken: set[str]) -> str:
         name += "_"
     taken.add(name)
     return name
+
+
+def characters_of(tables: TTFont) -> Mapping[int, str]:
+    """Code point to glyph name, from the table that HarfBuzz reads; that of the Macintosh has bytes for characters."""
+    if "cmap" not in tables:
+        return {}
+    best = tables["cmap"].getBestCmap(cmapPreferences=(SYMBOLS, *UNICODE_CMAPS))
+    if best is None and (mac := tables["cmap"].getcmap(*MAC_ROMAN)):
+        best = {ord(bytes([byte]).decode("mac_roman")): name for byte, name in mac.cmap.items() if byte < 256}
+    return best or {}
 
 
 def check_characters(data: bytes) -> None:

@@ -40,6 +40,7 @@ from glyphspline.plugins.datasets.spec import DatasetSpec, Sizes
 from glyphspline.runs.engine import Part, run
 from glyphspline.runs.pool import WorkerLostError
 from glyphspline.runs.shapes import Shapes
+from tests.character_fonts import HEAVY, font_of
 from tests.places import FONTS
 
 PLAIN = DatasetSpec(options=None, points=8)
@@ -338,6 +339,23 @@ def test_characters_scripts_and_coverage_choose(tmp_path: Path) -> None:
     assert summary.rows == len(rows) == sum(font["rows"] for font in fonts.values())
     dataset(FONTS / "kouzan-kaisho.ttf", tmp_path / "kana", replace(PLAIN, scripts=("Hira",)), jobs=0)
     assert sorted(row["characters"] for row in rows_of(tmp_path / "kana")) == sorted("あいうのを")
+
+
+def test_a_row_is_of_the_character_asked_for_or_of_the_usual_one(tmp_path: Path) -> None:
+    """A glyph of a Kangxi radical and of the character, and one that stands for a character at an instance alone."""
+    cmap = {0x2FD3: "dragon", 0x9F8D: "dragon", 0x24: "dollar"}
+    font_of(tmp_path / "asked.ttf", cmap, "dollar.heavy", features=HEAVY, weight=True)
+    for k, (asked, category) in enumerate({"\u2fd3$": "So", "龍$": "Lo", "": "Lo"}.items()):
+        spec = DatasetSpec(options=None, characters=asked, instances="named")
+        gs.dataset(tmp_path / "asked.ttf", tmp_path / f"{k}", spec, jobs=0)
+        rows = [row for row in rows_of(tmp_path / f"{k}") if row["glyph"] != ".notdef"]
+        assert {row["category"] for row in rows if row["glyph"] == "dragon"} == {category}
+        if asked:
+            found = {(row["style"], row["glyph"]): row["category"] for row in rows}
+            assert found == {
+                ("Regular", "dragon"): category, ("Regular", "dollar"): "Sc",
+                ("Black", "dragon"): category, ("Black", "dollar.heavy"): "Sc",
+            }  # fmt: skip
 
 
 def test_variable_fonts_are_taken_at_their_named_instances(tmp_path: Path) -> None:
