@@ -47,7 +47,7 @@ DONE = [
 ]
 UNDONE = [
     f"{CONVERT} --text O龘",  # a character is missing
-    f"{CONVERT} --text O --tolerance 0.001",  # nothing is within a tenth of the last digit written
+    f"{CONVERT} --text O --tolerance 0.001 --precision 2",  # nothing is within a tenth of the last digit written
     "convert {place}/broken.ttf --format svg -j 0 --out {new} --all",  # a glyph fails
     "convert {gyosho} {place}/bad.ttf --text O --format svg -j 0 --out {new}",  # one of two fonts
     "refit {variable} --masters --text o龘 --format ttf -j 0 --out {new}",
@@ -55,7 +55,7 @@ UNDONE = [
     "dataset {variable} {place}/bad.ttf --no-fit --jobs 0 --out {new}",
     "text {gyosho} O龘 -o {new}.svg",
     "text {place}/broken.ttf AO -o {new}.svg",
-    "text {gyosho} O --tolerance 0.001 -o {new}.svg",
+    "text {gyosho} O --tolerance 0.001 --precision 2 -o {new}.svg",
     "atlas {gyosho} --text O龘 -o {new}.pdf",
     "atlas {place}/broken.ttf --all -o {new}.pdf",
     "check {gyosho} --text O龘 -j 0",

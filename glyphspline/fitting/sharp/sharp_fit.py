@@ -32,8 +32,9 @@ from .cutting import Chains, fit_contours, refit
 from .pieces import Pieces
 from .settings import EFFORTS, LONG_LINE
 
-SHARE = 0.97
-"""Share of the tolerance that the fit may use. The rest is for what its samples miss; the certificate decides."""
+SHARES = {"plain": 0.97, "masters": 0.94}
+"""Share of the tolerance that the fit may use, of a plain outline and of masters. The rest is for what its samples miss,
+and for rounding; the certificate decides."""
 
 
 def sharp_fits(options: Options, tolerance: float, em: float) -> Fits:
@@ -150,12 +151,13 @@ def fit_sharp(
         source: the contours' degrees and offsets. cubics: (K, m, 4, 2) their segments in each of K masters.
         mixes: (V, K) weights of the masters at the corners of the design space's grid; None for a plain outline.
     """
+    kind = "plain" if mixes is None else "masters"
     settings = EFFORTS[options.effort](
-        near=SHARE * tolerance,
+        near=SHARES[kind] * tolerance,
         angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em, c2=True, margin=float(options.margin),
         residual=options.solver_tolerance,
     )  # fmt: skip
-    shares = RETRIES["plain" if mixes is None else "masters"]
+    shares = RETRIES[kind]
 
     def fits() -> Iterator[SharpFit]:
         chains, pieces = fit_contours(cubics, source, settings)

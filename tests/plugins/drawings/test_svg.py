@@ -44,7 +44,7 @@ def test_what_the_svg_writer_wrote_is_read_back_equal(tmp_path: Path) -> None:
     assert outline.notes == ()
     for written, read in zip(glyph.contours, outline.contours, strict=True):
         np.testing.assert_array_equal(read.degrees, written.curve.degrees)
-        np.testing.assert_allclose(read.points, written.curve.rounded(2).points, atol=1e-9)
+        np.testing.assert_allclose(read.points, written.curve.rounded(1).points, atol=1e-9)
 
 
 def test_a_folder_of_drawings_is_a_source_in_the_order_of_their_numbers(tmp_path: Path) -> None:

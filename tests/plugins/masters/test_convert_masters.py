@@ -368,7 +368,7 @@ def test_the_default_master_is_drawn_and_a_page_has_all(tmp_path: Path) -> None:
     assert CliRunner().invoke(app, call).exit_code == 0
     result = gs.convert_masters(gs.open_font(CFF2).masters("o"))
     contours = result.instance({}).contours
-    assert f'd="{path_data(contours, 2)}"' in (tmp_path / "svg" / "o.svg").read_text()
+    assert f'd="{path_data(contours, 1)}"' in (tmp_path / "svg" / "o.svg").read_text()
     lines = [json.loads(line) for line in (tmp_path / "manifest.jsonl").read_text().splitlines()]
     assert [sorted(line["files"]) for line in lines] == [["results"], ["curvature", "gallery", "results", "svg"]]
     assert [line["advance"] for line in lines] == [gs.open_font(CFF2).outline(n).advance for n in ("space", "o")]
