@@ -95,6 +95,7 @@ class Glyph(NamedTuple):
 
     Attributes:
         path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
+        finer: of the result, with a decimal more: the gallery draws combs over it, which are uneven otherwise.
         measures: of the contours; None if nothing is fitted.
         kept: what is stored as the result, if that is another one. axes: see :func:`.report.data.glyph_text`.
     """
@@ -106,6 +107,7 @@ class Glyph(NamedTuple):
     measures: list[dict[str, Any]] | None
     kept: Any = None
     axes: Mapping[str, Any] | None = None
+    finer: PathData | None = None
 
 
 def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
@@ -120,7 +122,11 @@ def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
         return list(map(Glyph, results, paths, paths, nothing, nothing))
     sources = source_data(results) if {"source", GALLERY} & {*spec.formats} else nothing
     polygons = polygon_data(results) if GALLERY in spec.formats else nothing
-    return list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets)))
+    glyphs = list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets)))
+    if GALLERY in spec.formats:
+        finer = curves_data(arrays.curves, results[0].options.precision + 1, offsets)
+        glyphs = [glyph._replace(finer=path) for glyph, path in zip(glyphs, finer, strict=True)]
+    return glyphs
 
 
 def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[dict[str, Any]]]:
@@ -168,7 +174,8 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
         if name == POLYGON:
             return polygon_document(result, source, polygons)
         polygon, control = (part.text for part in polygons)
-        shown = {"source": source.text, "result": glyph.path.text, "polygon": polygon, "control": control}
+        curve = (glyph.finer or glyph.path).text
+        shown = {"source": source.text, "result": curve, "polygon": polygon, "control": control}
         return glyph_text(shown, files, glyph.measures or (), glyph.axes)
     path, box = {"path": glyph.path}, {"ink": glyph.path.box}
     shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": box, "pdf": box}

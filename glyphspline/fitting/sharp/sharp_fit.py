@@ -33,8 +33,8 @@ from .pieces import Pieces
 from .settings import EFFORTS, LONG_LINE
 
 SHARES = {"plain": 0.97, "masters": 0.94}
-"""Share of the tolerance that the fit may use, of a plain outline and of masters. The rest is for what its samples miss,
-and for rounding; the certificate decides."""
+"""Share of the tolerance that the fit of a plain outline, and of masters, may use. The rest is for rounding, and what
+its samples miss; the certificate decides."""
 
 
 def sharp_fits(options: Options, tolerance: float, em: float) -> Fits:

@@ -44,6 +44,7 @@ STEPS = 60
 """Maximum number of iterations shown: the first half of them are consecutive, then their distance grows."""
 
 DIGITS = 2
+"""Decimals of paths, at least: with fewer, the combs that the page draws over short segments are uneven."""
 
 
 class Work:
@@ -212,7 +213,7 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
     arcs = [arc for contour in result.contours for arc in contour.interpolations]
     return {
         "variant": result.options.variant,
-        "result": path_data((contour.curve for contour in result.contours), result.options.precision),
+        "result": path_data((each.curve for each in result.contours), max(DIGITS, result.options.precision)),
         "polygons": [points(contour.polygon) for contour in result.contours],
         "movable": [is_smooth(contour) for contour in result.contours],
         "notes": list(result.notes),
