@@ -1,0 +1,137 @@
+"""Skia's path operations (the extra ``drawings``) on shapes: only where something has to be cut or united.
+
+They work in single precision, so that shapes are brought to some thousand units, and only what changes is taken back.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from typing import Any, TypeAlias
+
+from ....errors import GlyphsplineError
+from ....extras import need
+from .painted import Shape, placed
+from .path_data import Path, Subpath
+from .transforms import Box, translation
+
+SIZE = 4096.0
+"""Height of a view in the units of the operations, about: single precision has a thousandth of them."""
+
+CHANGED = 1e-6
+"""Share of an area from which it counts as changed."""
+
+Area: TypeAlias = Any
+"""A ``pathops.Path``, by its own rule of filling."""
+
+
+class CutError(GlyphsplineError):
+    """Skia found no result."""
+
+
+class Plane:
+    """Shapes as areas and back.
+
+    Args:
+        x, y: the middle of what is drawn, in the glyph's units. height: of it.
+    """
+
+    def __init__(self, x: float, y: float, height: float) -> None:
+        self._x, self._y = x, y
+        self.scale = 2.0 ** round(math.log2(SIZE / height))
+
+    @cached_property
+    def _skia(self) -> Any:
+        need("drawings")
+        import pathops
+
+        return pathops
+
+    def area(self, shape: Shape) -> Area:
+        """A shape as an area."""
+        found = self._skia.Path()
+        found.fillType = self._skia.FillType.EVEN_ODD if shape.rule == "evenodd" else self._skia.FillType.WINDING
+        for subpath in shape.path:
+            points = [((x - self._x) * self.scale, (y - self._y) * self.scale) for x, y in placed(subpath.points, shape.matrix)]
+            draw(found, points, subpath)
+        return found
+
+    def box(self, corners: list[tuple[float, float]]) -> Area:
+        """A polygon, in the glyph's units, as an area."""
+        return self.area(Shape([Subpath(corners, [1] * (len(corners) - 1), True)], translation(0.0, 0.0)))
+
+    def path(self, area: Area) -> Path:
+        """An area as a path in the glyph's units."""
+        found = path_of(area)
+        for subpath in found:
+            subpath.points = [(x / self.scale + self._x, y / self.scale + self._y) for x, y in subpath.points]
+        return found
+
+    def simple(self, area: Area) -> Area:
+        """The same area without overlaps, filled by the nonzero rule.
+
+        Raises:
+            CutError: Skia finds no result.
+        """
+        return self._tried(lambda: self._united([area]))
+
+    def united(self, areas: list[Area]) -> Area:
+        """What any of some areas covers; raises as :meth:`simple`."""
+        return self._tried(lambda: self._united(areas))
+
+    def both(self, one: Area, other: Area) -> Area:
+        """What both areas cover; raises as :meth:`simple`."""
+        return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.INTERSECTION))
+
+    def without(self, one: Area, other: Area) -> Area:
+        """What the first area covers and the second does not; raises as :meth:`simple`."""
+        return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.DIFFERENCE))
+
+    def _united(self, areas: list[Area]) -> Area:
+        builder = self._skia.OpBuilder()
+        for area in areas:
+            builder.add(area, self._skia.PathOp.UNION)
+        return builder.resolve()
+
+    def _tried(self, make: Any) -> Area:
+        try:
+            return make()
+        except self._skia.PathOpsError as error:
+            raise CutError("path operations found no result") from error
+
+
+def draw(area: Area, points: list[tuple[float, float]], subpath: Subpath) -> None:
+    """Add a subpath, at these points, to an area."""
+    pen, at = area.getPen(), 1
+    pen.moveTo(points[0])
+    for degree in subpath.degrees:
+        (pen.lineTo, pen.qCurveTo, pen.curveTo)[degree - 1](*points[at : at + degree])
+        at += degree
+    (pen.closePath if subpath.closed else pen.endPath)()
+
+
+def path_of(area: Area) -> Path:
+    """An area as a path, in its own units."""
+    from pathops import PathVerb
+
+    area.convertConicsToQuads(0.05)
+    found: Path = []
+    for verb, points in area:
+        if verb == PathVerb.MOVE:
+            found.append(Subpath([points[0]]))
+        elif verb == PathVerb.CLOSE:
+            found[-1].closed = True
+        else:
+            found[-1].points.extend(points)
+            found[-1].degrees.append(len(points))
+    return [subpath for subpath in found if subpath.degrees]
+
+
+def size_of(area: Area) -> float:
+    """The area of an area without overlaps."""
+    return abs(float(area.area))
+
+
+def overlap(one: Box | Any, other: Box | Any) -> bool:
+    """Whether two boxes, each left, bottom, right and top, have more than a line in common."""
+    return bool(one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3])

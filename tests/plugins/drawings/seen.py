@@ -1,0 +1,259 @@
+"""Small drawings of every kind that people give: what a browser shows of each, we draw, or say what we leave out.
+
+``python -m scripts.drawings_seen`` draws all of them by Chromium and by us, and compares.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+HEAD = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+BOX = 'viewBox="0 0 100 100"'
+
+
+class Seen(NamedTuple):
+    """A drawing.
+
+    Attributes:
+        text: inside the root, or the whole file if it begins as one. named: a part of what is said to be not read; ""
+            if all of it is. root: attributes of the root.
+    """
+
+    text: str
+    named: str = ""
+    root: str = BOX
+
+    @property
+    def document(self) -> str:
+        """The file."""
+        return self.text if self.text.startswith(("<?", "<!", "<svg")) else f"<svg {HEAD} {self.root}>{self.text}</svg>"
+
+
+SQUARE = "M20 20H80V80H20Z"
+HOLE = "M35 35H65V65H35Z"
+STAR = "M50 5L79 95L3 40H97L21 95Z"
+
+SEEN = {
+    # Filling
+    "even-odd attribute": Seen(f'<path fill-rule="evenodd" d="{SQUARE}{HOLE}"/>'),
+    "even-odd style": Seen(f'<path style="fill-rule:evenodd" d="{SQUARE}{HOLE}"/>'),
+    "even-odd inherited": Seen(f'<g fill-rule="evenodd"><path d="{SQUARE}{HOLE}"/></g>'),
+    "even-odd star": Seen(f'<path fill-rule="evenodd" d="{STAR}"/>'),
+    "even-odd crossing": Seen('<path fill-rule="evenodd" d="M10 10H60V60H10ZM40 40H90V90H40Z"/>'),
+    "even-odd three deep": Seen(f'<path fill-rule="evenodd" d="M5 5H95V95H5Z{SQUARE}{HOLE}"/>'),
+    "even-odd shared edge": Seen('<path fill-rule="evenodd" d="M10 10H50V90H10ZM50 10H90V90H50Z"/>'),
+    "even-odd twice the same": Seen(f'<path fill-rule="evenodd" d="{SQUARE}{SQUARE}{HOLE}"/>'),
+    "nonzero star": Seen(f'<path d="{STAR}"/>'),
+    "nonzero hole": Seen(f'<path d="{SQUARE}M35 35V65H65V35Z"/>'),
+    "nonzero no hole": Seen(f'<path d="{SQUARE}{HOLE}"/>'),
+    "opposite shapes overlap": Seen('<path d="M10 10H60V60H10Z"/><path d="M40 40V90H90V40Z"/>'),
+    "opposite shapes, one with a hole": Seen(f'<path d="{SQUARE}M35 35V65H65V35Z"/><path d="M40 10V90H60V10Z"/>'),
+    "figure eight on a bar": Seen('<path d="M10 10L90 90V10L10 90Z"/><rect x="0" y="40" width="100" height="20"/>'),
+    "even-odd beside nonzero": Seen(f'<path fill-rule="evenodd" d="{SQUARE}{HOLE}"/><circle cx="50" cy="50" r="10"/>'),
+    "a shape twice": Seen('<rect width="50" height="50"/><rect width="50" height="50"/>'),
+    "open paths are filled": Seen('<path d="M10 10H90V90"/><polyline points="10,90 40,90 40,60"/>'),
+    # Style
+    "css class none": Seen('<style>.a{fill:none}</style><rect class="a" width="100" height="100"/><rect width="40" height="40"/>'),  # noqa: E501
+    "css id": Seen('<style>#a{display:none}</style><rect id="a" width="90" height="90"/><circle cx="50" cy="50" r="30"/>'),
+    "css child and sibling": Seen('<style>g > rect + rect{fill:none}</style><g><rect width="30" height="30"/><rect x="50" width="50" height="50"/></g>'),  # noqa: E501
+    "css nth-child": Seen('<style>rect:nth-child(2n){display:none}</style><rect width="30" height="30"/><rect x="40" width="30" height="30"/><rect x="70" y="50" width="30" height="30"/>'),  # noqa: E501
+    "css attribute": Seen('<style>[data-k^="hi"]{visibility:hidden}</style><rect data-k="hide" width="90" height="90"/><circle r="40"/>'),  # noqa: E501
+    "css not": Seen('<style>rect:not(.on){opacity:0}</style><rect width="90" height="90"/><rect class="on" width="30" height="60"/>'),  # noqa: E501
+    "css is and where": Seen('<style>:is(.a,.b) rect{fill:none} :where(.c) rect{fill:black}</style><g class="a"><rect width="90" height="90"/></g><g class="c" fill="none"><rect width="30" height="30"/></g>'),  # noqa: E501
+    "css important": Seen(f'<style>path{{fill:none!important}}</style><path style="fill:red" d="{SQUARE}"/><circle r="20"/>'),
+    "css specificity": Seen(f'<style>#p{{fill:red}} path.q{{fill:none}} path{{fill:none}}</style><path id="p" class="q" d="{SQUARE}"/>'),  # noqa: E501
+    "css order": Seen(f'<style>.q{{fill:none}} .q{{fill:red}}</style><path class="q" d="{SQUARE}"/>'),
+    "css beats attribute": Seen(f'<style>path{{fill:black}}</style><path fill="none" d="{SQUARE}"/>'),
+    "style beats css": Seen(f'<style>path{{fill:none}}</style><path style="fill:black" d="{SQUARE}"/>'),
+    "css comments": Seen(f'<style>/* .q{{fill:none}} */ .q{{/*;*/fill:/**/red;}}</style><path fill="none" class="q" d="{SQUARE}"/>'),  # noqa: E501
+    "css cdata": Seen('<style><![CDATA[ g > .a { fill : none } ]]></style><g><rect class="a" width="90" height="90"/></g><circle r="50"/>'),  # noqa: E501
+    "css media screen": Seen(f'<style>@media screen{{.q{{fill:none}}}} @media print{{.r{{fill:none}}}}</style><path class="q" d="{SQUARE}"/><circle class="r" r="20"/>'),  # noqa: E501
+    "css media attribute": Seen(f'<style media="print">path{{fill:none}}</style><path d="{SQUARE}"/>'),
+    "css media dark": Seen(f'<style>@media (prefers-color-scheme: dark){{path{{fill:none}}}}</style><path d="{SQUARE}"/>'),
+    "css import": Seen(f'<style>@import url("other.css");</style><path d="{SQUARE}"/>', "@import"),
+    "css supports": Seen(f'<style>@supports (fill:red){{path{{fill:none}}}}</style><path d="{SQUARE}"/>', "@supports"),
+    "css variable": Seen(f'<style>:root{{--ink:none}} .q{{fill:var(--ink)}} .r{{fill:var(--other, black)}}</style><path class="q" d="{SQUARE}"/><circle fill="none" class="r" r="20"/>'),  # noqa: E501
+    "css invalid value": Seen(f'<style>path{{fill:black; fill:bogus}}</style><path fill="none" d="{SQUARE}"/>'),
+    "css hover": Seen(f'<style>path:hover{{fill:none}}</style><path d="{SQUARE}"/>'),
+    "css geometry": Seen('<style>circle{cx:50px;cy:50%;r:30px} rect{x:5px;width:10px;height:20px}</style><circle r="2"/><rect width="1" height="1"/>'),  # noqa: E501
+    "css path": Seen(f"<style>path{{d:path('{SQUARE}')}}</style><path/>"),
+    "css path none": Seen(f'<style>.q{{d:none}}</style><path class="q" d="M0 0H10V10Z"/><path d="{SQUARE}"/>'),
+    "css type other": Seen(f'<style type="text/less">path{{fill:none}}</style><path d="{SQUARE}"/>'),
+    "css universal": Seen('<style>*{fill:none} circle{fill:black}</style><rect width="90" height="90"/><circle r="40"/>'),
+    "css two sheets": Seen(f'<style>path{{fill:none}}</style><style>path{{fill:black}}</style><path d="{SQUARE}"/>'),
+    "css case": Seen(f'<path style="FILL:NONE" d="{SQUARE}"/><circle r="20"/>'),
+    "css unknown selector": Seen(f'<style>path::what(3){{fill:none}} path{{fill:black}}</style><path fill="none" d="{SQUARE}"/>', "what"),  # noqa: E501
+    "css animation": Seen(f'<style>@keyframes k{{from{{opacity:1}}}} path{{animation:k 1s}}</style><path d="{SQUARE}"/>', "animation"),  # noqa: E501
+    # Paint
+    "fill inherit": Seen('<g fill="none"><rect fill="inherit" width="90" height="90"/><rect fill="black" width="20" height="20"/></g>'),  # noqa: E501
+    "fill current colour": Seen('<g color="transparent"><rect fill="currentColor" width="90" height="90"/></g><circle r="30" fill="currentColor"/>'),  # noqa: E501
+    "fill transparent": Seen('<rect fill="transparent" width="90" height="90"/><circle r="30"/>'),
+    "fill rgba 0": Seen('<rect fill="rgba(0,0,0,0)" width="90" height="90"/><rect fill="rgb(0 0 0 / 0%)" width="90" height="90"/><circle r="30"/>'),  # noqa: E501
+    "fill #0000": Seen('<rect fill="#0000" width="90" height="90"/><circle r="30" fill="#000f"/>'),
+    "fill hsl": Seen('<rect fill="hsla(120,50%,50%,0)" width="90" height="90"/><circle r="30" fill="hsl(0,100%,50%)"/>'),
+    "fill bogus inherits": Seen('<g fill="none"><rect fill="bogus" width="90" height="90"/></g><circle r="30"/>'),
+    "fill opacity 0": Seen('<rect fill-opacity="0" width="90" height="90"/><rect fill-opacity="0%" width="80" height="90"/><circle r="30"/>'),  # noqa: E501
+    "fill opacity inherited": Seen('<g fill-opacity="0"><rect width="90" height="90"/><circle fill-opacity="1" r="30"/></g>'),
+    "opacity 0": Seen('<rect opacity="0" width="90" height="90"/><g opacity="0"><rect width="80" height="90"/></g><circle r="30"/>'),  # noqa: E501
+    "opacity half": Seen('<rect opacity=".5" width="90" height="90"/>', "transparent"),
+    "fill initial": Seen('<g fill="none"><rect style="fill:initial" width="50" height="50"/></g>'),
+    "fill unset": Seen('<g fill="none"><rect style="fill:unset" width="90" height="90"/></g><circle r="30"/>'),
+    "gradient": Seen('<linearGradient id="l"><stop/><stop offset="1" stop-color="red"/></linearGradient><circle r="60" fill="url(#l)"/>'),  # noqa: E501
+    "gradient fading": Seen('<linearGradient id="l"><stop/><stop offset="1" stop-opacity="0"/></linearGradient><circle r="60" fill="url(#l)"/>', "fade"),  # noqa: E501
+    "gradient without stops": Seen('<linearGradient id="l"/><rect width="90" height="90" fill="url(#l)"/><circle r="30"/>'),
+    "gradient by reference": Seen('<linearGradient id="k"><stop/></linearGradient><radialGradient id="l" xlink:href="#k"/><circle r="60" fill="url(#l)"/>'),  # noqa: E501
+    "paint that is not there": Seen('<rect width="90" height="90" fill="url(#no)"/><circle r="30" fill="url(#no) black"/>'),
+    "pattern": Seen('<pattern id="p" width="10" height="10" patternUnits="userSpaceOnUse"><rect width="5" height="10"/></pattern><circle r="60" fill="url(#p)"/>', "pattern"),  # noqa: E501
+    "colours beside each other": Seen('<rect width="40" height="90" fill="#f00"/><rect x="50" width="40" height="90" fill="blue"/>'),  # noqa: E501
+    "colours upon each other": Seen('<rect width="90" height="90" fill="red"/><circle r="40" fill="blue"/>', "colours"),
+    "white on black": Seen('<rect width="90" height="90"/><circle cx="50" cy="50" r="30" fill="white"/>'),
+    "white behind black": Seen('<rect width="100" height="100" fill="#fff"/><circle cx="50" cy="50" r="30"/>'),
+    "white and black again": Seen('<rect width="90" height="90"/><circle cx="50" cy="50" r="30" fill="white"/><circle cx="50" cy="50" r="10"/>'),  # noqa: E501
+    "white alone": Seen('<circle cx="50" cy="50" r="30" fill="white"/>'),
+    # What is not shown
+    "display none": Seen('<g display="none"><rect width="90" height="90"/></g><circle r="30"/>'),
+    "display none stays": Seen('<g style="display:none"><rect display="inline" width="90" height="90"/></g><circle r="30"/>'),
+    "visibility back in a child": Seen('<g visibility="hidden"><rect width="90" height="90"/><circle visibility="visible" r="30"/></g>'),  # noqa: E501
+    "visibility collapse": Seen('<rect visibility="collapse" width="90" height="90"/><circle r="30"/>'),
+    "no size": Seen('<rect width="0" height="90"/><circle r="0"/><ellipse rx="0" ry="30"/><circle r="-5"/><rect width="-5" height="5"/><circle r="20"/>'),  # noqa: E501
+    "metadata": Seen(f'<title>t</title><desc>d</desc><metadata><x xmlns="urn:x"><path xmlns="http://www.w3.org/2000/svg" d="{SQUARE}"/></x></metadata><circle r="30"/>'),  # noqa: E501
+    "another namespace": Seen(f'<o:path xmlns:o="urn:o" d="{SQUARE}"/><g><o:g xmlns:o="urn:o"><path d="{SQUARE}"/></o:g></g><circle r="30"/>'),  # noqa: E501
+    "unknown element": Seen(f'<what><path d="{SQUARE}"/></what><circle r="30"/>'),
+    "text": Seen('<circle r="30"/><text x="10" y="90">A</text>', "text"),
+    "text hidden": Seen('<circle r="30"/><text display="none" x="10" y="90">A</text>'),
+    "text empty": Seen('<circle r="30"/><text x="10" y="90">  </text>'),
+    "image": Seen('<circle r="30"/><image href="data:image/gif;base64,R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7" x="50" width="50" height="50"/>', "image"),  # noqa: E501
+    "foreign object": Seen('<circle r="30"/><foreignObject width="50" height="50"><p xmlns="http://www.w3.org/1999/xhtml">x</p></foreignObject>', "foreignObject"),  # noqa: E501
+    "filter": Seen('<filter id="f"><feGaussianBlur stdDeviation="5"/></filter><circle cx="50" cy="50" r="30" filter="url(#f)"/>', "filter"),  # noqa: E501
+    "filter that is not there": Seen('<circle cx="50" cy="50" r="30" filter="none"/>'),
+    "marker": Seen('<marker id="m" markerWidth="9" markerHeight="9"><rect width="9" height="9"/></marker><path marker-end="url(#m)" d="M10 10H50V50"/>', "marker"),  # noqa: E501
+    "stroke": Seen('<path stroke="black" stroke-width="9" d="M20 20H80V80H20Z"/>', "stroke"),
+    "stroke of no fill": Seen('<path fill="none" stroke="black" d="M20 20H80"/>', "stroke"),
+    "stroke without width": Seen('<path stroke="black" stroke-width="0" d="M20 20H80V80H20Z"/>'),
+    "stroke transparent": Seen('<path stroke="black" stroke-opacity="0" stroke-width="9" d="M20 20H80V80H20Z"/>'),
+    "animation": Seen('<circle r="30"><animate attributeName="r" values="30;30" dur="1s"/></circle>', "animation"),
+    "svg font": Seen('<defs><font horiz-adv-x="600"><font-face font-family="F"/><glyph unicode="A" d="M0 0H9V9Z"/></font></defs>', "font"),  # noqa: E501
+    # Clones, symbols, views
+    "use": Seen('<defs><path id="g" d="M0 0H30V40H0Z"/></defs><use xlink:href="#g" x="50" y="50"/><use href="#g"/>'),
+    "use of a later one": Seen('<use href="#g" x="50" y="50"/><path id="g" d="M0 0H30V40H0Z"/>'),
+    "use inherits": Seen('<defs><path id="g" d="M0 0H30V40H0Z"/></defs><use href="#g" fill="none"/><g fill="none"><use href="#g" x="50" fill="black"/></g>'),  # noqa: E501
+    "use of a group with its own fill": Seen('<defs><g id="g" fill="black"><path d="M0 0H30V40H0Z"/></g></defs><use href="#g" x="20" fill="none"/>'),  # noqa: E501
+    "use nested": Seen('<defs><path id="a" d="M0 0H10V10H0Z"/><g id="b"><use href="#a" x="20"/></g></defs><use href="#b" y="30" transform="scale(2)"/>'),  # noqa: E501
+    "use in a loop": Seen('<g id="a"><use href="#a" x="10"/><rect width="20" height="20"/></g>'),
+    "use of nothing": Seen('<use href="#no"/><use href=""/><circle r="30"/>'),
+    "use of another file": Seen('<use href="other.svg#g"/><circle r="30"/>', "other files"),
+    "use css": Seen('<style>#g{fill:none} use #h{fill:none} .u{fill:black}</style><defs><path id="h" class="u" d="M0 0H30V40H0Z"/></defs><use href="#h"/><rect id="g" width="90" height="90"/>'),  # noqa: E501
+    "symbol": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol><use href="#s" x="10" y="20" width="40" height="40"/>'),  # noqa: E501
+    "symbol without size": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol><use href="#s"/>'),
+    "symbol with size": Seen('<symbol id="s" viewBox="0 0 10 10" width="30" height="30"><circle cx="5" cy="5" r="5"/></symbol><use href="#s"/>'),  # noqa: E501
+    "symbol cuts": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="10" cy="5" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
+    "symbol does not cut": Seen('<symbol id="s" viewBox="0 0 10 10" overflow="visible"><circle cx="10" cy="5" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
+    "symbol alone": Seen('<symbol><rect width="90" height="90"/></symbol><circle r="30"/>'),
+    "symbol slice": Seen('<symbol id="s" viewBox="0 0 10 20" preserveAspectRatio="xMidYMax slice"><circle cx="5" cy="15" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
+    "nested svg": Seen('<svg x="50%" width="50%" height="50%" viewBox="0 0 10 10"><path d="M0 0H10V10H0Z"/></svg>'),
+    "nested svg cuts": Seen('<svg x="10" y="10" width="50" height="50"><circle r="40"/></svg>'),
+    "nested svg does not cut": Seen('<svg x="30" y="30" width="50" height="50" overflow="visible"><circle r="20"/></svg>'),
+    "nested svg, percentages inside": Seen('<svg x="10" width="50" height="80"><rect width="50%" height="50%"/></svg>'),
+    "nested svg of no size": Seen('<svg width="0" height="50"><rect width="50" height="50"/></svg><circle r="30"/>'),
+    "nested svg, min": Seen('<svg width="80" height="40" viewBox="5 5 10 10" preserveAspectRatio="xMinYMin"><rect x="5" y="5" width="10" height="10"/></svg>'),  # noqa: E501
+    "nested svg, none": Seen('<svg width="80" height="40" viewBox="0 0 10 10" preserveAspectRatio="none"><circle cx="5" cy="5" r="5"/></svg>'),  # noqa: E501
+    "nested svg, one side": Seen('<svg width="40" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></svg>'),
+    "switch": Seen('<switch><rect systemLanguage="xx" width="90" height="90"/><circle systemLanguage="en" r="30"/><rect width="80" height="80"/></switch>'),  # noqa: E501
+    "switch extension": Seen('<switch><foreignObject requiredExtensions="http://ns.adobe.com/AI/" width="9" height="9"/><g><circle r="30"/></g></switch>'),  # noqa: E501
+    "language without a switch": Seen('<rect systemLanguage="de" width="90" height="90"/><circle r="30"/>'),
+    "link": Seen('<a href="x"><rect width="30" height="30"/></a>'),
+    # Clips and masks
+    "clip": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip in style": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><circle cx="50" cy="50" r="40" style="clip-path:url(\'#c\')"/>'),  # noqa: E501
+    "clip of a group": Seen('<clipPath id="c"><circle cx="50" cy="50" r="30"/></clipPath><g clip-path="url(#c)"><rect width="50" height="100"/><rect x="60" width="20" height="100"/></g>'),  # noqa: E501
+    "clip by box": Seen('<clipPath id="c" clipPathUnits="objectBoundingBox"><circle cx=".5" cy=".5" r=".5"/></clipPath><rect x="10" y="20" width="60" height="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip rule": Seen(f'<clipPath id="c"><path clip-rule="evenodd" d="{SQUARE}{HOLE}"/></clipPath><rect width="100" height="100" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip of a clip": Seen('<clipPath id="d"><rect width="100" height="50"/></clipPath><clipPath id="c" clip-path="url(#d)"><rect width="50" height="100"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip in a clip": Seen('<clipPath id="d"><rect width="100" height="50"/></clipPath><clipPath id="c"><circle cx="50" cy="50" r="40" clip-path="url(#d)"/></clipPath><rect width="100" height="100" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip by use": Seen('<defs><rect id="r" width="50" height="100"/></defs><clipPath id="c"><use href="#r" x="20"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip transformed": Seen('<clipPath id="c" transform="rotate(45 50 50)"><rect x="30" y="30" width="40" height="40"/></clipPath><rect width="100" height="100" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip with two shapes": Seen('<clipPath id="c"><rect width="60" height="60"/><path d="M40 40V90H90V40Z"/></clipPath><circle cx="50" cy="50" r="48" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip empty": Seen('<clipPath id="c"/><rect width="90" height="90" clip-path="url(#c)"/><circle r="30"/>'),
+    "clip that is not there": Seen('<circle r="30" clip-path="url(#c)"/>'),
+    "clip that cuts nothing": Seen('<clipPath id="c"><rect width="100" height="100"/></clipPath><circle cx="50.1" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip moves along": Seen('<clipPath id="c"><rect width="25" height="50"/></clipPath><g transform="translate(40 20)" clip-path="url(#c)"><circle cx="20" cy="20" r="20"/></g>'),  # noqa: E501
+    "clip by a circle function": Seen('<rect width="90" height="90" style="clip-path:circle(20px)"/>', "circle"),
+    "clip by text": Seen('<clipPath id="c"><text y="90" font-size="90">A</text></clipPath><rect width="90" height="90" clip-path="url(#c)"/>', "text"),  # noqa: E501
+    "clip ignores fill": Seen('<clipPath id="c" fill="none"><rect width="50" height="100" fill="none" opacity="0"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "mask white": Seen('<mask id="m"><rect width="50" height="100" fill="white"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask white and black": Seen('<mask id="m"><rect width="100" height="100" fill="#fff"/><circle cx="50" cy="50" r="20"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask by box": Seen('<mask id="m" maskContentUnits="objectBoundingBox"><rect width=".5" height="1" fill="white"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask region": Seen('<mask id="m" x="0" y="0" width=".5" height="1"><rect width="100" height="100" fill="white"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask grey": Seen('<mask id="m"><rect width="50" height="100" fill="gray"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>', "mask"),  # noqa: E501
+    "mask alpha": Seen('<mask id="m" style="mask-type:alpha"><rect width="50" height="100"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask empty": Seen('<mask id="m"/><rect width="90" height="90" mask="url(#m)"/><circle r="30"/>'),
+    "mask on a group": Seen('<mask id="m"><rect width="50" height="100" fill="white"/></mask><g mask="url(#m)"><circle cx="50" cy="50" r="40"/><rect x="40" width="20" height="100"/></g>'),  # noqa: E501
+    # Lengths and shapes
+    "units": Seen('<rect width="10mm" height="1cm"/><rect x="0.5in" width="10pt" height="1pc"/><rect y="50px" width="40Q" height="2em"/><rect x="60" y="60" width="1rem" height="1.5rem"/>'),  # noqa: E501
+    "percentages": Seen('<circle cx="50%" cy="25%" r="10%"/><rect x="10%" y="50%" width="50%" height="25%"/>', root='viewBox="0 0 100 80"'),  # noqa: E501
+    "font size": Seen('<g font-size="20"><rect width="2em" height="1em"/><g font-size="50%"><rect y="30" width="2em" height="1em"/></g></g>'),  # noqa: E501
+    "calc": Seen('<rect style="width:calc(50% + 10px);height:calc((1in - 6px) / 2)"/>'),
+    "rx only": Seen('<rect x="10" y="20" width="80" height="40" rx="10"/>'),
+    "ry only": Seen('<rect x="10" y="20" width="80" height="40" ry="10"/>'),
+    "rx too large": Seen('<rect x="10" y="20" width="80" height="40" rx="100"/>'),
+    "rx and ry": Seen('<rect x="10" y="20" width="80" height="40" rx="30" ry="5"/>'),
+    "rx percent": Seen('<rect x="10" y="20" width="80" height="40" rx="10%" ry="5%"/>'),
+    "rx negative": Seen('<rect x="10" y="20" width="80" height="40" rx="-10" ry="8"/>'),
+    "rx zero": Seen('<rect x="10" y="20" width="80" height="40" rx="0" ry="8"/>'),
+    "ellipse with one radius": Seen('<ellipse cx="50" cy="50" rx="30"/>'),
+    "circle px": Seen('<circle cx="50px" cy="50px" r="40px"/>'),
+    "odd count of points": Seen('<polygon points="10,10 90,10 90,90 10"/>'),
+    "points with an error": Seen('<polygon points="10,10 90,10 90,90 x 10,90"/>', "points"),
+    "points without separators": Seen('<polygon points="10-0 90 10-5.5.5,1e1,90"/>'),
+    # Path data
+    "arc flags": Seen('<path d="M10 50a1 1 0 0140 0a20 20 0 1120-20z"/>'),
+    "arc to itself": Seen('<path d="M20 20 H80 A25 25 0 1 0 80 20 V80 H20 Z"/>'),
+    "arc too small": Seen('<path d="M10 50A5 2 30 0 1 90 50Z"/>'),
+    "arc without radius": Seen('<path d="M10 50A0 20 0 0 1 90 50V90Z"/>'),
+    "arc negative radius": Seen('<path d="M10 50A-40 40 0 0 1 90 50Z"/>'),
+    "arc turned": Seen('<path d="M20 50A40 20 30 1 0 80 50Z"/>'),
+    "path exponents": Seen('<path d="M1e1 1E1 9e+1 100e-1.9e2.9e2Z"/>'),
+    "path compressed": Seen('<path d="M10-.5.5L90 10 50.5.5-5-5z"/>'),
+    "path implicit lines": Seen('<path d="m10 10 80 0 0 80zM20 60 30 60 30 80"/>'),
+    "path after z": Seen('<path d="M10 10h30v30zl-5 50h50zm50 0h20v20z"/>'),
+    "path smooth": Seen('<path d="M10 50S30 10 50 50S70 90 90 50T50 10T10 50Q0 0 30 30T60 60"/>'),
+    "path error at the end": Seen('<path d="M20 20H80V80H20ZL"/>', "path data"),
+    "path error in the middle": Seen('<path d="M20 20H80V80L x 3 H20Z"/>', "path data"),
+    "path error at the beginning": Seen('<path d="L20 20H80V80Z"/><circle r="20"/>', "path data"),
+    "path error in a flag": Seen('<path d="M20 20H80A5 5 0 2 1 80 80H20Z"/>', "path data"),
+    "path odd numbers": Seen('<path d="M20 20L80 20 80 80 20"/>', "path data"),
+    "path none": Seen('<path d=""/><path/><path d="none"/><circle r="30"/>'),
+    "path two moves": Seen('<path d="M5 5M20 20H80V80ZM1 1"/>'),
+    "path relative curves": Seen('<path d="m20 20c0 20 20 40 40 40s20-40 20-40q-10-20-20-10t-40 10z"/>'),
+    # Transforms
+    "transform list": Seen('<rect width="20" height="20" transform="translate(50,10),rotate(30)scale(2 1.5)"/>'),
+    "transform skew": Seen('<rect width="30" height="30" transform="translate(20) skewX(20) skewY(-10)"/>'),
+    "transform about a point": Seen('<rect x="30" y="30" width="30" height="20" transform="rotate(45 50 50)"/>'),
+    "transform odd spaces": Seen('<rect width="30" height="30" transform=" matrix ( 1,0 0 1 , 20.5-.5e1 ) "/>'),
+    "transform bad": Seen('<rect width="30" height="30" transform="rotate(30 1)"/>', "transform"),
+    "transform css": Seen('<rect width="30" height="30" style="transform:translate(20px,10%) rotate(0.1turn) scale(150%)"/>'),
+    "transform css over attribute": Seen('<rect width="30" height="30" transform="scale(3)" style="transform:translateX(20px)"/>'),
+    "transform css none": Seen('<rect width="30" height="30" transform="scale(3)" style="transform:none"/>'),
+    "transform css without unit": Seen('<rect width="30" height="30" style="transform:translate(20,10)"/>', "transform"),
+    "transform origin": Seen('<rect x="30" y="30" width="30" height="20" style="transform:rotate(45deg);transform-origin:50px 50px"/>'),  # noqa: E501
+    "transform origin centre": Seen('<rect x="30" y="30" width="30" height="20" style="transform:rotate(45deg);transform-origin:center"/>'),  # noqa: E501
+    "transform origin of its box": Seen('<rect x="30" y="30" width="30" height="20" style="transform:rotate(45deg);transform-box:fill-box;transform-origin:center"/>'),  # noqa: E501
+    "transform origin attribute": Seen('<rect x="30" y="30" width="30" height="20" transform="rotate(45)" transform-origin="40 40"/>'),  # noqa: E501
+    "transform of three dimensions": Seen('<rect width="30" height="30" style="transform:rotateX(45deg)"/>', "transform"),
+    "rotate property": Seen('<rect x="40" y="10" width="30" height="30" style="rotate:20deg"/>', "rotate"),
+    "mirrored": Seen('<path d="M10 10H60V60H10Z" transform="matrix(-1 0 0 1 100 0)"/><path d="M10 40H60V90H10Z"/>'),
+    "flat": Seen('<rect width="50" height="50" transform="scale(1 0)"/><circle r="30"/>'),
+    # Files
+    "view box offset": Seen('<circle cx="0" cy="0" r="40"/>', root='viewBox="-50 -50 100 100"'),
+    "size without view box": Seen('<circle cx="50%" cy="50%" r="40"/>', root='width="100" height="100"'),
+    "size in millimetres": Seen('<circle cx="50" cy="50" r="40"/>', root='width="30mm" height="30mm" viewBox="0 0 100 100"'),
+    "size in percent": Seen('<circle cx="50" cy="50" r="40"/>', root='width="100%" height="100%" viewBox="0 0 100 100"'),
+    "stretched": Seen('<circle cx="50" cy="50" r="40"/>', root='width="150" height="100" preserveAspectRatio="none" viewBox="0 0 100 100"'),  # noqa: E501
+    "root fill": Seen('<rect width="90" height="90"/><circle fill="black" r="30"/>', root=f'{BOX} fill="none"'),
+    "root style": Seen('<rect width="90" height="90"/><circle fill="black" r="30"/>', root=f'{BOX} style="fill:none"'),
+    "prefix": Seen(f'<s:svg xmlns:s="http://www.w3.org/2000/svg" {BOX}><s:path d="{SQUARE}"/><path d="M0 0H9V9Z"/></s:svg>'.replace("<s:svg", '<?xml version="1.0"?><s:svg', 1)),  # noqa: E501
+    "entities": Seen(f'<!DOCTYPE svg [<!ENTITY st "fill:none"><!ENTITY d "{SQUARE}">]><svg {HEAD} {BOX}><rect style="&st;" width="90" height="90"/><path d="&d;"/></svg>'),  # noqa: E501
+    "document type": Seen(f'<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd"><svg {HEAD} {BOX}><path d="{SQUARE}"/></svg>'),  # noqa: E501
+    "style sheet in another file": Seen(f'<?xml version="1.0"?><?xml-stylesheet href="no.css"?><svg {HEAD} {BOX}><path d="{SQUARE}"/></svg>', "other files"),  # noqa: E501
+    "nested groups": Seen("<g>" * 50 + f'<path d="{SQUARE}"/>' + "</g>" * 50),
+}
