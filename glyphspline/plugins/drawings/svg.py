@@ -46,7 +46,7 @@ class SvgDrawings(Source):
 
     def __init__(self, path: Path) -> None:
         self.path, self.family, self.style = path, path.stem, "Regular"
-        self._files = sorted(path.glob("*.svg")) if path.is_dir() else [path]
+        self._files = drawings_in(path)
         read = list[tuple[str, Outline | FontError]]()
         for file in self._files:
             try:
@@ -177,9 +177,14 @@ def pixels(element: Any, name: str) -> float | None:
     return value if value is not None and value > 0 else None
 
 
+def drawings_in(path: Path) -> list[Path]:
+    """The drawings of a folder by name, or one alone."""
+    return sorted([*path.glob("*.svg"), *path.glob("*.svgz")]) if path.is_dir() else [path]
+
+
 def _recognises(path: Path, head: bytes) -> bool:
     """Whether a path is a drawing, or a folder that holds some. What else XML may be says its reader."""
-    return next(path.glob("*.svg"), None) is not None if path.is_dir() else is_xml(head)
+    return bool(drawings_in(path)) if path.is_dir() else is_xml(head) or head.startswith((GZIP, *MARKS))
 
 
 READER = Reader(_recognises, lambda path, location: SvgDrawings.opened(path), own="svg")

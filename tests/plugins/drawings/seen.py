@@ -26,7 +26,7 @@ class Seen(NamedTuple):
     @property
     def document(self) -> str:
         """The file."""
-        return self.text if self.text.startswith(("<?", "<!", "<svg")) else f"<svg {HEAD} {self.root}>{self.text}</svg>"
+        return self.text if self.text.startswith(("<?", "<!")) else f"<svg {HEAD} {self.root}>{self.text}</svg>"
 
 
 SQUARE = "M20 20H80V80H20Z"
@@ -213,7 +213,7 @@ SEEN = {
     "arc negative radius": Seen('<path d="M10 50A-40 40 0 0 1 90 50Z"/>'),
     "arc turned": Seen('<path d="M20 50A40 20 30 1 0 80 50Z"/>'),
     "path exponents": Seen('<path d="M1e1 1E1 9e+1 100e-1.9e2.9e2Z"/>'),
-    "path compressed": Seen('<path d="M10-.5.5L90 10 50.5.5-5-5z"/>'),
+    "path compressed": Seen('<path d="M10-.5L90.5.5 50.5 90-5-5z"/>'),
     "path implicit lines": Seen('<path d="m10 10 80 0 0 80zM20 60 30 60 30 80"/>'),
     "path after z": Seen('<path d="M10 10h30v30zl-5 50h50zm50 0h20v20z"/>'),
     "path smooth": Seen('<path d="M10 50S30 10 50 50S70 90 90 50T50 10T10 50Q0 0 30 30T60 60"/>'),

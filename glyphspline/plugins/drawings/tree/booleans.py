@@ -52,7 +52,10 @@ class Plane:
         found = self._skia.Path()
         found.fillType = self._skia.FillType.EVEN_ODD if shape.rule == "evenodd" else self._skia.FillType.WINDING
         for subpath in shape.path:
-            points = [((x - self._x) * self.scale, (y - self._y) * self.scale) for x, y in placed(subpath.points, shape.matrix)]
+            points = [
+                ((x - self._x) * self.scale, (y - self._y) * self.scale)
+                for x, y in placed(subpath.points, shape.matrix)
+            ]
             draw(found, points, subpath)
         return found
 
@@ -73,7 +76,7 @@ class Plane:
         Raises:
             CutError: Skia finds no result.
         """
-        return self._tried(lambda: self._united([area]))
+        return self._tried(lambda: simplified(area))
 
     def united(self, areas: list[Area]) -> Area:
         """What any of some areas covers; raises as :meth:`simple`."""
@@ -88,16 +91,26 @@ class Plane:
         return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.DIFFERENCE))
 
     def _united(self, areas: list[Area]) -> Area:
-        builder = self._skia.OpBuilder()
+        """All that are simple run alike, so that they are one area by the nonzero rule."""
+        found = self._skia.Path()
         for area in areas:
-            builder.add(area, self._skia.PathOp.UNION)
-        return builder.resolve()
+            found.addPath(simplified(area))
+        return simplified(found)
 
     def _tried(self, make: Any) -> Area:
         try:
             return make()
         except self._skia.PathOpsError as error:
             raise CutError("path operations found no result") from error
+
+
+def simplified(area: Area) -> Area:
+    """A copy of an area without overlaps, filled by the nonzero rule; Skia's own exceptions pass through."""
+    import pathops
+
+    found = pathops.Path(area)
+    found.simplify(fix_winding=True, keep_starting_points=True)
+    return found
 
 
 def draw(area: Area, points: list[tuple[float, float]], subpath: Subpath) -> None:

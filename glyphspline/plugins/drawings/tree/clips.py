@@ -19,6 +19,10 @@ FLAT = 1 / 128
 """How far the luminance of a mask may be from black or white."""
 
 
+REGION = (("x", "-10%", "x"), ("y", "-10%", "y"), ("width", "120%", "x"), ("height", "120%", "y"))
+"""Where a mask lets anything through: attributes, what they are without, and what 100 % are."""
+
+
 class Cutting:
     """What cuts shapes.
 
@@ -47,7 +51,7 @@ class Cutting:
             text = style[name]
             if not shapes or text.lower() == "none" or (name == "mask" and place.mode == "clip"):
                 continue
-            target = self._of.document.target(reference(text))
+            target = self._of.resource(reference(text))
             if reference(text) is None or (target is None and not (reference(text) or "").startswith("#")):
                 self._of.unread.add(f"{name}: {text[:40]}", self._of.line_of(element))
             elif target is not None and target.tag == ("clipPath" if name == "clip-path" else "mask"):
@@ -95,18 +99,16 @@ class Cutting:
         """The area of a clip path for an element."""
         structure = self._of
         style = structure.style_of(target)
-        matrix = self._in_units(target.get("clipPathUnits"), element, place)
-        inside = replace(
-            place, matrix=np.eye(3) if matrix is None else matrix, style=style, mode="clip", opacity=1.0, size=None
-        )
-        if target.get("clipPathUnits") == "objectBoundingBox":
-            inside = replace(inside, lengths=inside.lengths.in_box())
-        inside = replace(inside, matrix=inside.matrix @ structure.transform(target, inside))
+        inside = replace(place, style=style, mode="clip", opacity=1.0, size=None)
+        units = self._in_units(target.get("clipPathUnits"), element, place)
         shapes: list[Shape] = []
-        for child in () if matrix is None or style["display"] == "none" else target:
-            shapes += structure.draw(child, inside)
+        if units is not None:
+            inside = replace(inside, matrix=place.matrix @ structure.transform(target, inside) @ units)
+            if target.get("clipPathUnits") == "objectBoundingBox":
+                inside = replace(inside, lengths=inside.lengths.in_box())
+            shapes = [shape for child in target for shape in structure.draw(child, inside)]
         area = self.plane.united([self.plane.area(shape) for shape in shapes])
-        own = structure.document.target(reference(style["clip-path"]))
+        own = structure.resource(reference(style["clip-path"]))
         if own is not None and own.tag == "clipPath" and own not in self._active:
             self._active.append(own)
             area = self.plane.both(area, self._clip(own, element, place))
@@ -123,7 +125,7 @@ class Cutting:
         area = plane.united([])
         if frame is None or matrix is None:
             return area
-        inside = replace(place, matrix=matrix, style=style, mode="ink", opacity=1.0, size=None)
+        inside = replace(place, matrix=place.matrix @ matrix, style=style, mode="ink", opacity=1.0, size=None)
         if target.get("maskContentUnits") == "objectBoundingBox":
             inside = replace(inside, lengths=inside.lengths.in_box())
         for shape in [one for child in target for one in structure.draw(child, inside)]:
@@ -135,10 +137,9 @@ class Cutting:
             piece = plane.area(shape)
             area = plane.without(area, piece) if light < 0.5 else plane.united([area, piece])
         lengths = place.lengths.in_box() if units == "objectBoundingBox" else place.lengths
-        sides = {"x": "-10%", "y": "-10%", "width": "120%", "height": "120%"}
-        box = [lengths.of(target.get(name) or whole, "x" if name in ("x", "width") else "y") or 0.0 for name, whole in sides.items()]
-        area = plane.both(area, self._box((box[0], box[1], box[2], box[3]), frame))
-        own = structure.document.target(reference(style["mask"]))
+        x, y, width, height = (lengths.of(target.get(name) or whole, side) or 0.0 for name, whole, side in REGION)
+        area = plane.both(area, self._box((x, y, width, height), place.matrix @ frame))
+        own = structure.resource(reference(style["mask"]))
         if own is not None and own.tag == "mask" and own not in self._active:
             self._active.append(own)
             area = plane.both(area, self._mask(own, element, place))
@@ -146,13 +147,13 @@ class Cutting:
         return area
 
     def _in_units(self, units: str | None, element: Any, place: Place) -> FloatArray | None:
-        """(3, 3) from the units of a clip path or mask to the glyph's; None if a bounding box has no size."""
+        """(3, 3) from the units of a clip path or mask to its element's; None if a bounding box has no size."""
         if units != "objectBoundingBox":
-            return place.matrix
+            return np.eye(3)
         box = self._of.box(element, place)
         if box is None or not (box[2] and box[3]):
             return None
-        return place.matrix @ np.array([[box[2], 0.0, box[0]], [0.0, box[3], box[1]], [0.0, 0.0, 1.0]])
+        return np.array([[box[2], 0.0, box[0]], [0.0, box[3], box[1]], [0.0, 0.0, 1.0]])
 
 
 def is_inside(shape: Shape, box: Box, matrix: FloatArray) -> bool:

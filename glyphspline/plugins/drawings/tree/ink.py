@@ -16,7 +16,7 @@ import numpy as np
 
 from ....extras import has
 from ....types import FloatArray
-from .booleans import CHANGED, CutError, Plane, overlap, size_of
+from .booleans import CutError, overlap, size_of
 from .painted import Shape, placed
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ NARROW = 5e-4
 
 WHITE = 254.5 / 255
 """Components from which a colour is that of the paper."""
+
+LOST = 1e-3
+"""Share of an area that goes unnoticed where colours lie upon each other."""
 
 MOST_PAIRS = 2_000
 """Pairs of shapes that are looked at for colours upon each other."""
@@ -221,18 +224,19 @@ def name_colours(shapes: Sequence[Shape], structure: Structure) -> None:
         if shapes[j].colour[:3] == shapes[k].colour[:3] or not overlap(boxes[j], boxes[k]):
             continue
         pairs += 1
-        if pairs > MOST_PAIRS or upon(shapes[j], shapes[k], structure):
+        if pairs > MOST_PAIRS or shows_through(shapes[j], shapes[k], structure):
             structure.unread.add("colours upon each other, drawn as one ink", shapes[k].line)
             return
 
 
-def upon(one: Shape, other: Shape, structure: Structure) -> bool:
-    """Whether a part of a shape covers another; their boxes say it where nothing cuts."""
+def shows_through(below: Shape, above: Shape, structure: Structure) -> bool:
+    """Whether a shape covers a part of another, and not all of it; their boxes say it where nothing cuts."""
     if not has("drawings"):
         return True
     plane = structure.cutting.plane
     try:
-        areas = [plane.simple(plane.area(each)) for each in (one, other)]
-        return size_of(plane.both(*areas)) > 1e3 * CHANGED * min(map(size_of, areas))
+        areas = [plane.simple(plane.area(each)) for each in (below, above)]
+        covered, sizes = size_of(plane.both(*areas)), [size_of(area) for area in areas]
     except CutError:
         return True
+    return LOST * min(sizes) < covered < (1 - LOST) * sizes[0]

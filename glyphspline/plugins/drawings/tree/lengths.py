@@ -16,7 +16,7 @@ FIRST, NEXT = re.compile(rf"({NUMBER})"), re.compile(rf"\s*,?\s*({NUMBER})")
 UNITS = {name: inches / INCHES["px"] for name, inches in INCHES.items()} | {"q": 96 / 101.6, "": 1.0}
 """Absolute units, in CSS pixels."""
 
-OF_WINDOW = {"vw", "vh", "vmin", "vmax", "vi", "vb", "ch", "cap", "ic", "lh", "rlh"}
+OF_WINDOW = {"vw", "vh", "vmin", "vmax", "vi", "vb", "ex", "ch", "cap", "ic", "lh", "rlh"}
 """Units of the browser's window, or of a typeface: unknown here."""
 
 X_HEIGHT = 0.5

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
-from .document import Document
 from .lengths import LENGTH, share
 from .unread import Unread
 
@@ -116,10 +115,14 @@ def reference(text: str) -> str | None:
 
 
 class Painter:
-    """Paint as it shows: its colour, with all opacities."""
+    """Paint as it shows: its colour, with all opacities.
 
-    def __init__(self, document: Document, unread: Unread, style_of: Any) -> None:
-        self._document, self._unread, self._style_of = document, unread, style_of
+    Args:
+        structure: a :class:`.structure.Structure`, which knows gradients and styles. unread: what is not read.
+    """
+
+    def __init__(self, structure: Any, unread: Unread) -> None:
+        self._structure, self._unread = structure, unread
 
     def paint(self, text: str, style: Any, opacity: float, line: int) -> Colour | None:
         """What a paint shows as; None: nothing of it shows. What shows in part is named."""
@@ -140,7 +143,7 @@ class Painter:
         place = URL.fullmatch(text)
         if place is None:
             return colour(text)
-        server = self._document.target(reference(text))
+        server = self._structure.resource(reference(text))
         tag = None if server is None else server.tag
         if tag in ("linearGradient", "radialGradient"):
             return self._gradient(server, line)
@@ -157,14 +160,14 @@ class Painter:
         while server is not None and server not in seen:
             seen.add(server)
             yield server
-            server = self._document.target(server.get("href"))
+            server = self._structure.resource(server.get("href"))
 
     def _gradient(self, server: Any, line: int) -> Colour | None:
         """A gradient as one colour: of its stops, if they are alike, else one that is not known."""
         stops = next((found for each in self._chain(server) if (found := each.findall("stop"))), [])
         colours = []
         for stop in stops:
-            style = self._style_of(stop)
+            style = self._structure.style_of(stop)
             found = self._resolved(style["stop-color"], style, line)
             if found is not None:
                 colours.append(found._replace(alpha=found.alpha * (share(style["stop-opacity"]) or 0.0)))

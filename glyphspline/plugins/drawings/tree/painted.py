@@ -21,7 +21,7 @@ class Shape:
 
     Attributes:
         path: in the units of its element. matrix: (3, 3) from these to the glyph's. rule: of filling.
-        colour: that shows, with its opacity. line: of its element in the file.
+        colour: that shows, with its opacity. line: of its element in the file. element: that one.
     """
 
     path: Path
@@ -29,6 +29,7 @@ class Shape:
     rule: str = "nonzero"
     colour: Colour = BLACK
     line: int = 0
+    element: Any = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +39,8 @@ class Place:
     Attributes:
         matrix: (3, 3) from the units around it to the glyph's. style: of what is around it; None around the root.
         lengths: what its relative lengths refer to. opacity: of all groups around it.
-        mode: whether what is wanted is "ink", the area of a "clip", or "geometry", whatever of it shows.
+        mode: what is wanted: "ink"; the area of a "clip"; "geometry", whatever of it shows; "own", of that what is no
+            clone.
         clones: the elements that the clones around it refer to. size: width and height that a clone gives it.
     """
 

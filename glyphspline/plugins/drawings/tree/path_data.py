@@ -27,11 +27,15 @@ FLAGS = (3, 4)
 
 @dataclass
 class Subpath:
-    """A start, and the points that each segment of degree 1, 2 or 3 adds; closed or open."""
+    """A start, and the points that each segment of degree 1, 2 or 3 adds; closed or open.
+
+    ``written``: how many segments were written, with a line that closes it: an arc may be several cubics.
+    """
 
     points: list[Point]
     degrees: list[int] = field(default_factory=list)
     closed: bool = False
+    written: int = 0
 
 
 Path: TypeAlias = list[Subpath]
@@ -51,12 +55,13 @@ class Drawn:
         self.here, self._start, self._is_open = to, to, True
 
     def add(self, *to: Point) -> None:
-        """Add a segment of as many further points as its degree; what follows a closed subpath begins where that did."""
+        """Add a segment by its further points; after a closed subpath another one begins where that did."""
         if not self._is_open:
             self.move(self.here)
         last = self.path[-1]
         last.points.extend(to)
         last.degrees.append(len(to))
+        last.written += 1
         self.here = to[-1]
 
     def arc(self, rx: float, ry: float, turn: float, large: bool, sweep: bool, to: Point) -> None:
@@ -80,11 +85,13 @@ class Drawn:
         cubics[-1][-1] = to
         for each in cubics:
             self.add(*each)
+        self.path[-1].written -= len(cubics) - 1
 
     def close(self) -> None:
         """End a subpath where it began."""
         if self._is_open:
             self.path[-1].closed = True
+            self.path[-1].written += self.here != self._start
         self.here, self._is_open = self._start, False
 
 
@@ -127,7 +134,7 @@ def _arguments(data: str, at: int, command: str) -> tuple[list[float] | None, in
     numbers = list[float]()
     for k in range(ARGUMENTS[command]):
         found = (FLAG if command == "A" and k in FLAGS else NUMBER).match(data, at)
-        if found is None or (k == 0 and not numbers and data[at : found.start(1)].strip() == "," and data[at - 1].isalpha()):
+        if found is None or (data[at - 1].isalpha() and "," in data[at : found.start(1)]):
             return None, at
         value = float(found[1])
         if not math.isfinite(value):
@@ -158,5 +165,3 @@ def _segment(drawn: Drawn, command: str, numbers: list[float], control: tuple[in
         points = [mirrored, *points]
     drawn.add(*points)
     return (len(points), points[-2]) if len(points) > 1 else (0, drawn.here)
-
-

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ....extras import need
-from .booleans import SIZE, CutError, draw, path_of
+from .booleans import SIZE, draw, path_of, simplified
 from .lengths import LENGTH, Lengths
 from .painted import Shape
 from .styles import Style
@@ -57,9 +57,7 @@ def _simple(area: Any) -> Any:
     """An area without overlaps; as it is where Skia finds no result."""
     import pathops
 
-    builder = pathops.OpBuilder()
-    builder.add(area, pathops.PathOp.UNION)
     try:
-        return builder.resolve()
-    except (pathops.PathOpsError, CutError):
+        return simplified(area)
+    except pathops.PathOpsError:
         return area

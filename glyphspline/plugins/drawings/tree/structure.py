@@ -14,7 +14,7 @@ from ....types import FloatArray
 from .clips import Cutting
 from .document import Document
 from .lengths import Lengths, share, view_box
-from .paint import BLACK, Painter, reference
+from .paint import BLACK, Painter, colour, reference
 from .painted import Place, Shape, bounds_of
 from .path_data import Path
 from .shapes import SHAPES, length, shape_of
@@ -26,14 +26,17 @@ from .unread import Unread
 DEEPEST_USE = 16
 """Limit of clones within clones."""
 
-MOST = {"ink": 10_000, "clip": 10_000, "geometry": 100_000}
+MOST = {"ink": 10_000, "clip": 10_000, "geometry": 100_000, "own": 100_000}
 """Limits of elements that are drawn, or looked at for clips and boxes: a hundred bytes of clones can ask for 2^64."""
+
+UNSEEN = ("geometry", "own")
+"""What is wanted where neither paint nor clips count."""
 
 GROUPS = {"g", "a", "switch", "svg", "symbol", "use"}
 NAMED = {"text": "text", "image": "images", "foreignObject": "HTML in foreignObject"}
 """Elements that show something and are not read."""
 
-LANGUAGES = {"en", "en-us"}
+LANGUAGE = "en"
 """For ``systemLanguage``: the same wherever this runs."""
 
 EXTENSIONS = {"http://www.w3.org/1999/xhtml", "http://www.w3.org/1998/Math/MathML"}
@@ -61,7 +64,7 @@ class Structure:
 
     def __post_init__(self) -> None:
         self.cascade = Cascade(self.document, self.unread)
-        self.painter = Painter(self.document, self.unread, self.style_of)
+        self.painter = Painter(self, self.unread)
         self.cutting = Cutting(self)
         self._met: Counter[str] = Counter()
 
@@ -73,6 +76,11 @@ class Structure:
         """
         lengths = Lengths(self.view[2], self.view[3], unread=self.unread)
         found = self.draw(self.document.root, Place(matrix, None, lengths))
+        style = self.style_of(self.document.root)
+        for name in ("background", "background-color"):
+            ground = colour(style.get(name, "none"))
+            if style.get(name, "none").lower() != "none" and (ground is None or (ground.alpha and min(ground[:3]) < 1)):
+                self.unread.add(f"the {name}", self.line_of(self.document.root))
         for element in self.document.root.iter():
             if element.tag in ANIMATED:
                 self.unread.add("scripts" if element.tag == "script" else "animation", self.line_of(element))
@@ -87,6 +95,17 @@ class Structure:
         around = self.document.parents.get(element)
         return self.cascade.of(element, None if around is None else self.style_of(around))
 
+    def resource(self, reference: str | None) -> Any:
+        """A paint server, clip path and the like by its reference; None if there is none, or it is not displayed."""
+        target = element = self.document.target(reference)
+        while element is not None and element is not self.document.root:
+            if self.style_of(element)["display"].lower() == "none" or (
+                element.tag == "defs" and not is_for_us(element)
+            ):
+                return None
+            element = self.document.parents.get(element)
+        return target
+
     def draw(self, element: Any, place: Place, transformed: bool = True) -> list[Shape]:
         """The shapes of an element, clipped and masked; ``transformed``: by its own transform too."""
         self._met[place.mode] += 1
@@ -94,16 +113,18 @@ class Structure:
             raise GlyphsplineError(f"more than {MOST[place.mode]:,} elements, clones counted")
         tag = element.tag
         is_known = tag in SHAPES or tag in GROUPS or tag in NAMED
-        if not is_known or not is_for_us(element) or (tag == "symbol" and place.size is None):
+        is_root = element is self.document.root
+        if not is_known or not (is_root or is_for_us(element)) or (tag == "symbol" and place.size is None):
             return []
         style, line = self.cascade.of(element, place.style), self.line_of(element)
         size = font_size(style)
         lengths = replace(place.lengths, size=size, root_size=self.cascade.root_size, line=line)
         opacity = place.opacity * (share(style["opacity"]) or 0.0)
-        if style["display"] == "none" or (place.mode == "ink" and opacity < 1 / 512):
+        if (style["display"].lower() == "none" and not is_root) or (place.mode == "ink" and opacity < 1 / 512):
             return []
         if tag in NAMED:
-            self._name(element, style, line)
+            if place.mode not in UNSEEN:
+                self._name(element, style, line)
             return []
         inner = replace(place, style=style, lengths=lengths, opacity=opacity)
         if transformed:
@@ -114,22 +135,22 @@ class Structure:
             return []  # clip paths take no groups
         else:
             found = self._group(element, inner)
-        if found and place.mode != "geometry":
+        if found and place.mode not in UNSEEN:
             self._name_effects(style, line)
             found = self.cutting.cut(found, element, inner)
         return found
 
     def _name(self, element: Any, style: Style, line: int) -> None:
         """Name an element that is not read, if it would show something."""
-        shows = "".join(element.itertext()).strip() if element.tag == "text" else element.tag != "image" or element.get("href")
-        if shows and style["visibility"] == "visible":
+        has = {"text": "".join(element.itertext()).strip(), "image": element.get("href")}.get(element.tag, True)
+        if has and style["visibility"] == "visible":
             self.unread.add(NAMED[element.tag], line)
 
     def _name_effects(self, style: Style, line: int) -> None:
         """Name effects on what is drawn."""
         for name in ("filter", "mix-blend-mode"):
             target = reference(style[name])
-            if style[name] not in ("none", "normal") and (target is None or self.document.target(target) is not None):
+            if style[name] not in ("none", "normal") and (target is None or self.resource(target) is not None):
                 self.unread.add("filters" if name == "filter" else f"{name}: {style[name]}", line)
 
     def get(self, element: Any, style: Style) -> Any:
@@ -152,10 +173,12 @@ class Structure:
         if element.tag == "switch":
             children = iter([child for child in element if child.tag[0] != "{" and is_for_us(child)][:1])
         found = [shape for child in children for shape in self.draw(child, inside)]
-        return found if clip is None or place.mode == "geometry" else self.cutting.within(found, clip, inside.matrix)
+        return found if clip is None or place.mode in UNSEEN else self.cutting.within(found, clip, inside.matrix)
 
     def _clone(self, element: Any, place: Place) -> list[Shape]:
         """What a ``use`` refers to, in its place."""
+        if place.mode == "own":
+            return []
         href = element.get("href")
         target, line = self.document.target(href), self.line_of(element)
         if target is None:
@@ -173,9 +196,7 @@ class Structure:
         get = self.get(element, place.style)
         x, y = (length(name, get, place.lengths) or 0.0 for name in "xy")
         size = (get("width"), get("height")) if target.tag in ("symbol", "svg") else None
-        inside = replace(
-            place, matrix=place.matrix @ translation(x, y), clones=(*place.clones, target), size=size
-        )
+        inside = replace(place, matrix=place.matrix @ translation(x, y), clones=(*place.clones, target), size=size)
         return self.draw(target, inside)
 
     def _is_around(self, element: Any, inner: Any) -> bool:
@@ -188,10 +209,10 @@ class Structure:
         assert place.style is not None
         get, lengths = self.get(element, place.style), place.lengths
         x, y = (length(name, get, lengths) or 0.0 for name in "xy")
-        sides = []
-        for name, given, whole in zip(("width", "height"), place.size or (None, None), (lengths.width, lengths.height), strict=True):
-            value = lengths.of(given, "x" if name == "width" else "y") if given else length(name, get, lengths)
-            sides.append(whole if value is None or value < 0 else value)
+        sides, given = [lengths.width, lengths.height], place.size or (None, None)
+        for k, name in enumerate(("width", "height")):
+            value = lengths.of(given[k], "xy"[k]) if given[k] else length(name, get, lengths)
+            sides[k] = sides[k] if value is None or value < 0 else value
         box = view_box(element.get("viewBox"))
         if min(sides) <= 0 or (box is not None and min(box[2:]) <= 0):
             return None
@@ -218,8 +239,8 @@ class Structure:
         path = shape_of(element.tag, self.get(element, style), place.lengths)
         if not path:
             return []
-        if place.mode == "geometry":
-            return [Shape(path, place.matrix)]
+        if place.mode in UNSEEN:
+            return [Shape(path, place.matrix, line=line, element=element)]
         if style["visibility"] != "visible":
             return []
         if place.mode == "clip":
@@ -230,7 +251,7 @@ class Structure:
             found.reverse()
         if element.tag in MARKED:
             for name in ("marker-start", "marker-mid", "marker-end"):
-                target = self.document.target(reference(style[name]))
+                target = self.resource(reference(style[name]))
                 if target is not None and target.tag == "marker":
                     self.unread.add("markers", line)
         for shape in found:
@@ -301,7 +322,7 @@ class Structure:
 def is_for_us(element: Any) -> bool:
     """Whether an element's conditions hold in a browser that speaks English."""
     languages = element.get("systemLanguage")
-    if languages is not None and not LANGUAGES & {each.strip().lower() for each in languages.split(",")}:
+    if languages is not None and LANGUAGE not in {each.strip().lower()[:2] for each in languages.split(",")}:
         return False
     return EXTENSIONS.issuperset((element.get("requiredExtensions") or "").split())
 

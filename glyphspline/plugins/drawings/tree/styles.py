@@ -31,7 +31,9 @@ OWN = {
 }  # fmt: skip
 """Properties that are not inherited and that attributes set too."""
 
-FONT_SIZES = dict(zip("xx-small x-small small medium large x-large xx-large".split(), (9, 10, 13, 16, 18, 24, 32), strict=True))  # noqa: E501, SIM905
+FONT_SIZES = {
+    "xx-small": 9, "x-small": 10, "small": 13, "medium": 16, "large": 18, "x-large": 24, "xx-large": 32,
+}  # fmt: skip
 
 MOVING = {"translate", "rotate", "scale", "offset-path", "animation", "animation-name", "zoom", "perspective"}
 """Properties that place elements, which are named where they are set."""

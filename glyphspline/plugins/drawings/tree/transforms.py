@@ -42,8 +42,12 @@ def _matrix(name: str, of: Sequence[float]) -> FloatArray:
         cos, sin = _turn(of[0])
         turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
         return turn if len(of) == 1 else translation(of[1], of[2]) @ turn @ translation(-of[1], -of[2])
-    slope = math.tan(math.radians(of[0]))
-    return np.array([[1.0, slope if name == "skewx" else 0.0, 0.0], [0.0 if name == "skewx" else slope, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    return _skew(*((of[0], 0.0) if name == "skewx" else (0.0, of[0])))
+
+
+def _skew(x: float, y: float) -> FloatArray:
+    """The matrix of a skew by angles in degrees."""
+    return np.array([[1.0, math.tan(math.radians(x)), 0.0], [math.tan(math.radians(y)), 1.0, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _turn(degrees: float) -> tuple[float, float]:
@@ -101,8 +105,7 @@ def _of_units(name: str, inside: str, box: Box, lengths: Lengths) -> FloatArray 
             return None
         values.append(float(found_one[1]) * (ANGLES[unit] if angular else 0.01 if unit else 1.0))
     if name == "skew" and len(values) in (1, 2):
-        x, y = (math.tan(math.radians(value)) for value in (*values, 0.0)[:2])
-        return np.array([[1.0, x, 0.0], [y, 1.0, 0.0], [0.0, 0.0, 1.0]])
+        return _skew(values[0], (*values, 0.0)[1])
     if name in ("scalex", "scaley") and len(values) == 1:
         return np.diag([values[0], 1.0, 1.0] if name == "scalex" else [1.0, values[0], 1.0])
     known = "rotate" if name == "rotatez" else name
@@ -115,6 +118,9 @@ def _along(text: str, box: Box, lengths: Lengths, side: str) -> float | None:
     if text.endswith("%"):
         found = LENGTH.fullmatch(text)
         return None if found is None else float(found[1]) / 100 * (box[2] if side == "x" else box[3])
+    found = LENGTH.fullmatch(text)
+    if found is not None and not found[2] and float(found[1]):
+        return None  # style sheets have no lengths without units
     return lengths.of(text, side)
 
 
@@ -128,7 +134,10 @@ def origin(text: str, box: Box, lengths: Lengths) -> tuple[float, float] | None:
         across, down = down, across
     found = []
     for word, side, start, size in ((across, "x", box[0], box[2]), (down, "y", box[1], box[3])):
-        value = SHARES[word] * size if word in SHARES else _along(word, box, lengths, side)
+        if word in SHARES:
+            value: float | None = SHARES[word] * size
+        else:
+            value = lengths.of(word, side) if not word.endswith("%") else _along(word, box, lengths, side)
         if value is None:
             return None
         found.append(start + value)
