@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ....extras import has
-from ....types import FloatArray
+from ....types import BoolArray, FloatArray, IntArray
 from .booleans import CutError, overlap, size_of
 from .painted import Shape, placed
 
@@ -141,7 +141,7 @@ def directed_of(chains: list[Chain], rule: str) -> list[Chain] | None:
     return turned
 
 
-def crossings(chains: list[Chain]) -> tuple[FloatArray, ...] | None:
+def crossings(chains: list[Chain]) -> tuple[IntArray, IntArray, IntArray, IntArray, BoolArray] | None:
     """Where scan lines cross contours, from left to right.
 
     Returns:

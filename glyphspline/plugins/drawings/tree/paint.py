@@ -60,7 +60,7 @@ def colour(text: str) -> Colour | None:
         return None
     from matplotlib.colors import CSS4_COLORS  # most drawings name no other colour
 
-    return _of_digits(CSS4_COLORS[text][1:]) if text in CSS4_COLORS else None
+    return _of_digits(str(CSS4_COLORS[text])[1:]) if text in CSS4_COLORS else None
 
 
 def _of_digits(digits: str) -> Colour | None:
@@ -164,7 +164,7 @@ class Painter:
 
     def _gradient(self, server: Any, line: int) -> Colour | None:
         """A gradient as one colour: of its stops, if they are alike, else one that is not known."""
-        stops = next((found for each in self._chain(server) if (found := each.findall("stop"))), [])
+        stops: list[Any] = next((found for each in self._chain(server) if (found := each.findall("stop"))), [])
         colours = []
         for stop in stops:
             style = self._structure.style_of(stop)

@@ -105,8 +105,8 @@ class Cascade:
             if name.startswith("--"):
                 style[name] = value
         for name, written in declared:
-            value = substituted(written, style) if "var(" in written else written
-            if name.startswith("--") or value is None:
+            value = substituted(written, style) or ""
+            if name.startswith("--") or not value:
                 continue
             if name in MOVING and value.lower() not in WIDE | {"none", "1", "normal", "0"}:
                 self._unread.add(f"the style {name}: {value}", line)
