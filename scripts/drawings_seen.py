@@ -46,10 +46,11 @@ NOT_PLAIN = re.compile(
 
 
 class Verdict(NamedTuple):
-    """How a drawing was read: the mean difference of ink (None: not read at all), and what is said."""
+    """How a drawing was read: the mean difference of ink (None: not read at all), what is said, and the share of ink."""
 
     difference: float | None
     said: tuple[str, ...]
+    ink: float = 0.0
 
     def is_right(self) -> bool:
         """Whether it is drawn as seen, or what is not is said."""
@@ -94,8 +95,8 @@ def verdict_on(page: Any, file: Path, work: Path, strokes: bool) -> Verdict:
         return Verdict(None, (error.message,))
     (work / "ours.svg").write_text(ours(file, outline), encoding="utf-8")
     seen, drawn = picture(page, file), picture(page, work / "ours.svg")
-    apart = min(float(np.abs(a - drawn[..., 3]).mean()) for a in inks(seen))
-    return Verdict(apart, outline.unread)
+    apart, ink = min((float(np.abs(a - drawn[..., 3]).mean()), float(a.mean())) for a in inks(seen))
+    return Verdict(apart, outline.unread, ink)
 
 
 def files_of(folder: Path | None, work: Path) -> Iterator[tuple[str, Path, str]]:
@@ -120,6 +121,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path, nargs="?", help="resvg's tests")
     parser.add_argument("--all", action="store_true", help="print every drawing")
     parser.add_argument("--strokes", action="store_true", help="draw strokes")
+    parser.add_argument("--ink", action="store_true", help="print the share of ink that Chromium shows of each")
     call = parser.parse_args()
     from playwright.sync_api import sync_playwright
 
@@ -139,6 +141,8 @@ def main() -> None:
                 else (is_drawn and not found.said if not named else any(named in each for each in found.said))
             )
             counts["wrong" if not right else "said" if found.said else "drawn"] += 1
+            if call.ink and is_drawn:
+                print(f'    "{name}": {found.ink:.4f},')
             if call.all or not right:
                 apart = "not read" if found.difference is None else f"{found.difference:.4f}"
                 print(f"{'' if right else 'WRONG '}{name}: {apart} {'; '.join(found.said)}")

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from ...errors import FontError, GlyphsplineError
 from ...outlines.outline import FontMetrics, Outline
 from ...readers.open import Reader, is_xml
 from ...readers.pens import ContourPen
-from ...readers.source import Source, first_claims, opening
+from ...readers.source import Location, Source, first_claims, opening
 from ...types import Head
 from .tree.document import GZIP, LARGEST_FILE, MARKS, parse
 from .tree.ink import ink_of
@@ -30,11 +31,15 @@ from .tree.structure import Structure
 FLIP = np.diag([1.0, -1.0, 1.0])
 
 
+STROKES = "strokes"
+"""The named instance of drawings that has their strokes too: ``--location strokes``."""
+
+
 class SvgDrawings(Source):
     """One SVG file or a folder of them.
 
     Attributes:
-        path: file or folder, as given. face_index, location: 0 and empty.
+        path: file or folder, as given. face_index: 0. location: empty, or strokes at 1, where these are ink too.
         family, style: the name of the file or folder without suffix, and "Regular".
         metrics: of the first drawing.
         glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names. A
@@ -44,13 +49,14 @@ class SvgDrawings(Source):
 
     format, kind, each_its_em = "SVG", "drawing", True
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, location: Location = None) -> None:
         self.path, self.family, self.style = path, path.stem, "Regular"
+        self.location, self.instances = place_of(location), {STROKES: {STROKES: 1.0}}
         self._files = drawings_in(path)
         read = list[tuple[str, Outline | FontError]]()
         for file in self._files:
             try:
-                one = read_drawing(file)
+                one = read_drawing(file, bool(self.location))
                 read.append((one.name, one))
             except FontError as error:  # raised when the drawing is asked for
                 read.append((file.stem, error))
@@ -75,6 +81,19 @@ class SvgDrawings(Source):
         if isinstance(found, FontError):
             raise FontError(found.message, font=found.font)
         return replace(found, gid=head.gid)
+
+
+def place_of(asked: Location) -> Mapping[str, float]:
+    """With strokes, or empty.
+
+    Raises:
+        FontError: something else is asked for.
+    """
+    place = {asked.strip().casefold(): 1.0} if isinstance(asked, str) else {**(asked or {})}
+    place.pop("", None)
+    if not {*place} <= {STROKES}:
+        raise FontError(f"no place {', '.join(place)!r}: a drawing has {STROKES}, which draws these too")
+    return MappingProxyType({STROKES: 1.0} if place.get(STROKES) else {})
 
 
 def read_drawing(file: Path, strokes: bool = False) -> Outline:
@@ -187,4 +206,4 @@ def _recognises(path: Path, head: bytes) -> bool:
     return bool(drawings_in(path)) if path.is_dir() else is_xml(head) or head.startswith((GZIP, *MARKS))
 
 
-READER = Reader(_recognises, lambda path, location: SvgDrawings.opened(path), own="svg")
+READER = Reader(_recognises, SvgDrawings.opened, has_axes=True, own="svg")

@@ -54,13 +54,13 @@ SEEN = {
     "open paths are filled": Seen('<path d="M10 10H90V90"/><polyline points="10,90 40,90 40,60"/>'),
     # Style
     "css class none": Seen('<style>.a{fill:none}</style><rect class="a" width="100" height="100"/><rect width="40" height="40"/>'),  # noqa: E501
-    "css id": Seen('<style>#a{display:none}</style><rect id="a" width="90" height="90"/><circle cx="50" cy="50" r="30"/>'),
+    "css id": Seen('<style>#a{display:none}</style><rect id="a" width="90" height="90"/><circle cx="50" cy="50" r="30"/>'),  # noqa: E501
     "css child and sibling": Seen('<style>g > rect + rect{fill:none}</style><g><rect width="30" height="30"/><rect x="50" width="50" height="50"/></g>'),  # noqa: E501
     "css nth-child": Seen('<style>rect:nth-child(2n){display:none}</style><rect width="30" height="30"/><rect x="40" width="30" height="30"/><rect x="70" y="50" width="30" height="30"/>'),  # noqa: E501
     "css attribute": Seen('<style>[data-k^="hi"]{visibility:hidden}</style><rect data-k="hide" width="90" height="90"/><circle r="40"/>'),  # noqa: E501
     "css not": Seen('<style>rect:not(.on){opacity:0}</style><rect width="90" height="90"/><rect class="on" width="30" height="60"/>'),  # noqa: E501
     "css is and where": Seen('<style>:is(.a,.b) rect{fill:none} :where(.c) rect{fill:black}</style><g class="a"><rect width="90" height="90"/></g><g class="c" fill="none"><rect width="30" height="30"/></g>'),  # noqa: E501
-    "css important": Seen(f'<style>path{{fill:none!important}}</style><path style="fill:red" d="{SQUARE}"/><circle r="20"/>'),
+    "css important": Seen(f'<style>path{{fill:none!important}}</style><path style="fill:red" d="{SQUARE}"/><circle r="20"/>'),  # noqa: E501
     "css specificity": Seen(f'<style>#p{{fill:red}} path.q{{fill:none}} path{{fill:none}}</style><path id="p" class="q" d="{SQUARE}"/>'),  # noqa: E501
     "css order": Seen(f'<style>.q{{fill:none}} .q{{fill:red}}</style><path class="q" d="{SQUARE}"/>'),
     "css beats attribute": Seen(f'<style>path{{fill:black}}</style><path fill="none" d="{SQUARE}"/>'),
@@ -69,7 +69,7 @@ SEEN = {
     "css cdata": Seen('<style><![CDATA[ g > .a { fill : none } ]]></style><g><rect class="a" width="90" height="90"/></g><circle r="50"/>'),  # noqa: E501
     "css media screen": Seen(f'<style>@media screen{{.q{{fill:none}}}} @media print{{.r{{fill:none}}}}</style><path class="q" d="{SQUARE}"/><circle class="r" r="20"/>'),  # noqa: E501
     "css media attribute": Seen(f'<style media="print">path{{fill:none}}</style><path d="{SQUARE}"/>'),
-    "css media dark": Seen(f'<style>@media (prefers-color-scheme: dark){{path{{fill:none}}}}</style><path d="{SQUARE}"/>'),
+    "css media dark": Seen(f'<style>@media (prefers-color-scheme: dark){{path{{fill:none}}}}</style><path d="{SQUARE}"/>'),  # noqa: E501
     "css import": Seen(f'<style>@import url("other.css");</style><path d="{SQUARE}"/>', "@import"),
     "css supports": Seen(f'<style>@supports (fill:red){{path{{fill:none}}}}</style><path d="{SQUARE}"/>', "@supports"),
     "css variable": Seen(f'<style>:root{{--ink:none}} .q{{fill:var(--ink)}} .r{{fill:var(--other, black)}}</style><path class="q" d="{SQUARE}"/><circle fill="none" class="r" r="20"/>'),  # noqa: E501
@@ -79,7 +79,7 @@ SEEN = {
     "css path": Seen(f"<style>path{{d:path('{SQUARE}')}}</style><path/>"),
     "css path none": Seen(f'<style>.q{{d:none}}</style><path class="q" d="M0 0H10V10Z"/><path d="{SQUARE}"/>'),
     "css type other": Seen(f'<style type="text/less">path{{fill:none}}</style><path d="{SQUARE}"/>'),
-    "css universal": Seen('<style>*{fill:none} circle{fill:black}</style><rect width="90" height="90"/><circle r="40"/>'),
+    "css universal": Seen('<style>*{fill:none} circle{fill:black}</style><rect width="90" height="90"/><circle r="40"/>'),  # noqa: E501
     "css two sheets": Seen(f'<style>path{{fill:none}}</style><style>path{{fill:black}}</style><path d="{SQUARE}"/>'),
     "css case": Seen(f'<path style="FILL:NONE" d="{SQUARE}"/><circle r="20"/>'),
     "css unknown selector": Seen(f'<style>path::what(3){{fill:none}} path{{fill:black}}</style><path fill="none" d="{SQUARE}"/>', "what"),  # noqa: E501
@@ -90,19 +90,19 @@ SEEN = {
     "fill transparent": Seen('<rect fill="transparent" width="90" height="90"/><circle r="30"/>'),
     "fill rgba 0": Seen('<rect fill="rgba(0,0,0,0)" width="90" height="90"/><rect fill="rgb(0 0 0 / 0%)" width="90" height="90"/><circle r="30"/>'),  # noqa: E501
     "fill #0000": Seen('<rect fill="#0000" width="90" height="90"/><circle r="30" fill="#000f"/>'),
-    "fill hsl": Seen('<rect fill="hsla(120,50%,50%,0)" width="90" height="90"/><circle r="30" fill="hsl(0,100%,50%)"/>'),
+    "fill hsl": Seen('<rect fill="hsla(120,50%,50%,0)" width="90" height="90"/><circle r="30" fill="hsl(0,100%,50%)"/>'),  # noqa: E501
     "fill bogus inherits": Seen('<g fill="none"><rect fill="bogus" width="90" height="90"/></g><circle r="30"/>'),
     "fill opacity 0": Seen('<rect fill-opacity="0" width="90" height="90"/><rect fill-opacity="0%" width="80" height="90"/><circle r="30"/>'),  # noqa: E501
-    "fill opacity inherited": Seen('<g fill-opacity="0"><rect width="90" height="90"/><circle fill-opacity="1" r="30"/></g>'),
+    "fill opacity inherited": Seen('<g fill-opacity="0"><rect width="90" height="90"/><circle fill-opacity="1" r="30"/></g>'),  # noqa: E501
     "opacity 0": Seen('<rect opacity="0" width="90" height="90"/><g opacity="0"><rect width="80" height="90"/></g><circle r="30"/>'),  # noqa: E501
     "opacity half": Seen('<rect opacity=".5" width="90" height="90"/>', "transparent"),
     "fill initial": Seen('<g fill="none"><rect style="fill:initial" width="50" height="50"/></g>'),
     "fill unset": Seen('<g fill="none"><rect style="fill:unset" width="90" height="90"/></g><circle r="30"/>'),
     "gradient": Seen('<linearGradient id="l"><stop/><stop offset="1" stop-color="red"/></linearGradient><circle r="60" fill="url(#l)"/>'),  # noqa: E501
     "gradient fading": Seen('<linearGradient id="l"><stop/><stop offset="1" stop-opacity="0"/></linearGradient><circle r="60" fill="url(#l)"/>', "fade"),  # noqa: E501
-    "gradient without stops": Seen('<linearGradient id="l"/><rect width="90" height="90" fill="url(#l)"/><circle r="30"/>'),
+    "gradient without stops": Seen('<linearGradient id="l"/><rect width="90" height="90" fill="url(#l)"/><circle r="30"/>'),  # noqa: E501
     "gradient by reference": Seen('<linearGradient id="k"><stop/></linearGradient><radialGradient id="l" xlink:href="#k"/><circle r="60" fill="url(#l)"/>'),  # noqa: E501
-    "paint that is not there": Seen('<rect width="90" height="90" fill="url(#no)"/><circle r="30" fill="url(#no) black"/>'),
+    "paint that is not there": Seen('<rect width="90" height="90" fill="url(#no)"/><circle r="30" fill="url(#no) black"/>'),  # noqa: E501
     "pattern": Seen('<pattern id="p" width="10" height="10" patternUnits="userSpaceOnUse"><rect width="5" height="10"/></pattern><circle r="60" fill="url(#p)"/>', "pattern"),  # noqa: E501
     "colours beside each other": Seen('<rect width="40" height="90" fill="#f00"/><rect x="50" width="40" height="90" fill="blue"/>'),  # noqa: E501
     "colours upon each other": Seen('<rect width="90" height="90" fill="red"/><circle r="40" fill="blue"/>', "colours"),
@@ -112,7 +112,7 @@ SEEN = {
     "white alone": Seen('<circle cx="50" cy="50" r="30" fill="white"/>'),
     # What is not shown
     "display none": Seen('<g display="none"><rect width="90" height="90"/></g><circle r="30"/>'),
-    "display none stays": Seen('<g style="display:none"><rect display="inline" width="90" height="90"/></g><circle r="30"/>'),
+    "display none stays": Seen('<g style="display:none"><rect display="inline" width="90" height="90"/></g><circle r="30"/>'),  # noqa: E501
     "visibility back in a child": Seen('<g visibility="hidden"><rect width="90" height="90"/><circle visibility="visible" r="30"/></g>'),  # noqa: E501
     "visibility collapse": Seen('<rect visibility="collapse" width="90" height="90"/><circle r="30"/>'),
     "no size": Seen('<rect width="0" height="90"/><circle r="0"/><ellipse rx="0" ry="30"/><circle r="-5"/><rect width="-5" height="5"/><circle r="20"/>'),  # noqa: E501
@@ -144,7 +144,7 @@ SEEN = {
     "use of another file": Seen('<use href="other.svg#g"/><circle r="30"/>', "other files"),
     "use css": Seen('<style>#g{fill:none} use #h{fill:none} .u{fill:black}</style><defs><path id="h" class="u" d="M0 0H30V40H0Z"/></defs><use href="#h"/><rect id="g" width="90" height="90"/>'),  # noqa: E501
     "symbol": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol><use href="#s" x="10" y="20" width="40" height="40"/>'),  # noqa: E501
-    "symbol without size": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol><use href="#s"/>'),
+    "symbol without size": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol><use href="#s"/>'),  # noqa: E501
     "symbol with size": Seen('<symbol id="s" viewBox="0 0 10 10" width="30" height="30"><circle cx="5" cy="5" r="5"/></symbol><use href="#s"/>'),  # noqa: E501
     "symbol cuts": Seen('<symbol id="s" viewBox="0 0 10 10"><circle cx="10" cy="5" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
     "symbol does not cut": Seen('<symbol id="s" viewBox="0 0 10 10" overflow="visible"><circle cx="10" cy="5" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
@@ -152,7 +152,7 @@ SEEN = {
     "symbol slice": Seen('<symbol id="s" viewBox="0 0 10 20" preserveAspectRatio="xMidYMax slice"><circle cx="5" cy="15" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
     "nested svg": Seen('<svg x="50%" width="50%" height="50%" viewBox="0 0 10 10"><path d="M0 0H10V10H0Z"/></svg>'),
     "nested svg cuts": Seen('<svg x="10" y="10" width="50" height="50"><circle r="40"/></svg>'),
-    "nested svg does not cut": Seen('<svg x="30" y="30" width="50" height="50" overflow="visible"><circle r="20"/></svg>'),
+    "nested svg does not cut": Seen('<svg x="30" y="30" width="50" height="50" overflow="visible"><circle r="20"/></svg>'),  # noqa: E501
     "nested svg, percentages inside": Seen('<svg x="10" width="50" height="80"><rect width="50%" height="50%"/></svg>'),
     "nested svg of no size": Seen('<svg width="0" height="50"><rect width="50" height="50"/></svg><circle r="30"/>'),
     "nested svg, min": Seen('<svg width="80" height="40" viewBox="5 5 10 10" preserveAspectRatio="xMinYMin"><rect x="5" y="5" width="10" height="10"/></svg>'),  # noqa: E501
@@ -231,23 +231,23 @@ SEEN = {
     "transform about a point": Seen('<rect x="30" y="30" width="30" height="20" transform="rotate(45 50 50)"/>'),
     "transform odd spaces": Seen('<rect width="30" height="30" transform=" matrix ( 1,0 0 1 , 20.5-.5e1 ) "/>'),
     "transform bad": Seen('<rect width="30" height="30" transform="rotate(30 1)"/>', "transform"),
-    "transform css": Seen('<rect width="30" height="30" style="transform:translate(20px,10%) rotate(0.1turn) scale(150%)"/>'),
-    "transform css over attribute": Seen('<rect width="30" height="30" transform="scale(3)" style="transform:translateX(20px)"/>'),
+    "transform css": Seen('<rect width="30" height="30" style="transform:translate(20px,10%) rotate(0.1turn) scale(150%)"/>'),  # noqa: E501
+    "transform css over attribute": Seen('<rect width="30" height="30" transform="scale(3)" style="transform:translateX(20px)"/>'),  # noqa: E501
     "transform css none": Seen('<rect width="30" height="30" transform="scale(3)" style="transform:none"/>'),
-    "transform css without unit": Seen('<rect width="30" height="30" style="transform:translate(20,10)"/>', "transform"),
+    "transform css without unit": Seen('<rect width="30" height="30" style="transform:translate(20,10)"/>', "transform"),  # noqa: E501
     "transform origin": Seen('<rect x="30" y="30" width="30" height="20" style="transform:rotate(45deg);transform-origin:50px 50px"/>'),  # noqa: E501
     "transform origin centre": Seen('<rect x="30" y="30" width="30" height="20" style="transform:rotate(45deg);transform-origin:center"/>'),  # noqa: E501
     "transform origin of its box": Seen('<rect x="30" y="30" width="30" height="20" style="transform:rotate(45deg);transform-box:fill-box;transform-origin:center"/>'),  # noqa: E501
     "transform origin attribute": Seen('<rect x="30" y="30" width="30" height="20" transform="rotate(45)" transform-origin="40 40"/>'),  # noqa: E501
-    "transform of three dimensions": Seen('<rect width="30" height="30" style="transform:rotateX(45deg)"/>', "transform"),
+    "transform of three dimensions": Seen('<rect width="30" height="30" style="transform:rotateX(45deg)"/>', "transform"),  # noqa: E501
     "rotate property": Seen('<rect x="40" y="10" width="30" height="30" style="rotate:20deg"/>', "rotate"),
     "mirrored": Seen('<path d="M10 10H60V60H10Z" transform="matrix(-1 0 0 1 100 0)"/><path d="M10 40H60V90H10Z"/>'),
     "flat": Seen('<rect width="50" height="50" transform="scale(1 0)"/><circle r="30"/>'),
     # Files
     "view box offset": Seen('<circle cx="0" cy="0" r="40"/>', root='viewBox="-50 -50 100 100"'),
     "size without view box": Seen('<circle cx="50%" cy="50%" r="40"/>', root='width="100" height="100"'),
-    "size in millimetres": Seen('<circle cx="50" cy="50" r="40"/>', root='width="30mm" height="30mm" viewBox="0 0 100 100"'),
-    "size in percent": Seen('<circle cx="50" cy="50" r="40"/>', root='width="100%" height="100%" viewBox="0 0 100 100"'),
+    "size in millimetres": Seen('<circle cx="50" cy="50" r="40"/>', root='width="30mm" height="30mm" viewBox="0 0 100 100"'),  # noqa: E501
+    "size in percent": Seen('<circle cx="50" cy="50" r="40"/>', root='width="100%" height="100%" viewBox="0 0 100 100"'),  # noqa: E501
     "stretched": Seen('<circle cx="50" cy="50" r="40"/>', root='width="150" height="100" preserveAspectRatio="none" viewBox="0 0 100 100"'),  # noqa: E501
     "root fill": Seen('<rect width="90" height="90"/><circle fill="black" r="30"/>', root=f'{BOX} fill="none"'),
     "root style": Seen('<rect width="90" height="90"/><circle fill="black" r="30"/>', root=f'{BOX} style="fill:none"'),
@@ -256,4 +256,140 @@ SEEN = {
     "document type": Seen(f'<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd"><svg {HEAD} {BOX}><path d="{SQUARE}"/></svg>'),  # noqa: E501
     "style sheet in another file": Seen(f'<?xml version="1.0"?><?xml-stylesheet href="no.css"?><svg {HEAD} {BOX}><path d="{SQUARE}"/></svg>', "other files"),  # noqa: E501
     "nested groups": Seen("<g>" * 50 + f'<path d="{SQUARE}"/>' + "</g>" * 50),
+    # Others of each kind
+    "css of types": Seen('<style>rect:nth-of-type(odd),circle:first-of-type{fill:none}</style><rect width="30" height="30"/><rect x="40" width="30" height="30"/><circle cx="20" cy="70" r="20"/><circle cx="70" cy="70" r="20"/>'),  # noqa: E501
+    "css attribute equals": Seen('<style>[fill="red"]{fill:none} [data-a="X" i]{display:none}</style><rect fill="red" width="30" height="30"/><rect data-a="x" x="40" width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css two classes": Seen('<style>.a.b{fill:none}</style><rect class="b a" width="30" height="30"/><rect class="a" x="40" width="30" height="30"/>'),  # noqa: E501
+    "css root": Seen('<style>:root > g{fill:none}</style><g><rect width="30" height="30"/><circle fill="#000" r="20"/></g>'),  # noqa: E501
+    "css general sibling": Seen('<style>rect ~ circle{fill:none}</style><circle cx="20" cy="20" r="20"/><rect y="50" width="30" height="30"/><circle cx="70" cy="70" r="20"/>'),  # noqa: E501
+    "css empty and only": Seen('<style>g:empty{fill:none} g > rect:only-child{fill:none}</style><g><rect width="30" height="30"/></g><g><rect x="40" width="30" height="30"/><circle cx="50" cy="70" r="20"/></g>'),  # noqa: E501
+    "css has": Seen('<style>g:has(circle){display:none}</style><g><rect width="30" height="30"/></g><g><rect x="40" width="30" height="30"/><circle cx="50" cy="70" r="20"/></g>'),  # noqa: E501
+    "css namespace": Seen('<style>@namespace s url(http://www.w3.org/2000/svg); rect{fill:none}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css at the end": Seen('<rect class="a" width="30" height="30"/><circle r="50"/><g><defs><style>.a{fill:none}</style></defs></g>'),  # noqa: E501
+    "css important in style": Seen('<style>rect{fill:black!important}</style><rect style="fill:none" width="30" height="30"/><rect x="50" style="fill:none !important" width="30" height="30"/>'),  # noqa: E501
+    "css important attribute": Seen('<g fill="none"><rect fill="black !important" width="30" height="30"/></g><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css spaces": Seen('<rect style=" ; fill : none ;; " width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),
+    "css comment in style": Seen('<rect style="/* a;b */fill:none/*c*/" width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css media and": Seen('<style>@media all and (min-width: 1px){rect{fill:none}}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>', "media"),  # noqa: E501
+    "css layer": Seen('<style>@layer a{rect{fill:none}}</style><rect width="30" height="30"/>', "@layer"),
+    "css nesting": Seen('<style>g{ rect{fill:none} }</style><g><rect width="30" height="30"/></g>', "nested"),
+    "css html comment": Seen('<style>&lt;!-- rect{fill:none} --></style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css string with a brace": Seen('<style>text{font-family:"a}b;c"} rect{fill:none}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css pseudo-element": Seen('<style>rect::before{fill:none} rect:first-child{fill:none}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css opacity": Seen('<style>.a{opacity:0%} .b{fill-opacity:0.0} .c{opacity:150%}</style><rect class="a" width="30" height="30"/><rect class="b" x="40" width="30" height="30"/><circle class="c" cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css clip": Seen('<style>.k{clip-path:url("#c")}</style><clipPath id="c"><rect width="50" height="100"/></clipPath><circle class="k" cx="50" cy="50" r="40"/>'),  # noqa: E501
+    "css visibility": Seen('<style>g{visibility:hidden} .v{visibility:visible}</style><g><rect width="30" height="30"/><circle class="v" cx="50" cy="70" r="20"/></g>'),  # noqa: E501
+    "css current colour": Seen('<style>.a{color:transparent} .b{fill:currentColor}</style><g class="a"><rect class="b" width="30" height="30"/></g><circle class="b" cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css inherit": Seen('<style>g{fill:none} .i{fill:inherit} circle{fill:black}</style><g><rect class="i" width="30" height="30"/><circle cx="50" cy="70" r="20"/></g>'),  # noqa: E501
+    "css even-odd": Seen('<style>.e{fill-rule:evenodd}</style><g class="e"><path d="M20 20H80V80H20ZM35 35H65V65H35Z"/></g>'),  # noqa: E501
+    "css transform": Seen('<style>rect{transform:translate(10px,20px) skewX(10deg) rotate(.1rad)}</style><rect width="30" height="30"/>'),  # noqa: E501
+    "css transform matrix": Seen('<rect width="30" height="30" style="transform:matrix(1,.5,0,1,10,10)"/>'),
+    "css all": Seen('<g fill="none"><rect style="all:unset" width="30" height="30"/></g><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "fill short hex": Seen('<g fill="none"><rect fill="#12345" width="30" height="30"/><rect fill="rgb(1,2)" x="40" width="30" height="30"/></g><circle fill="#abc" cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "fill upper case": Seen('<rect fill="NONE" width="30" height="30"/><circle fill="RED" cx="50" cy="70" r="20"/><rect fill=" none " x="40" width="30" height="30"/>'),  # noqa: E501
+    "fill rgb out of range": Seen('<circle fill="rgb(300,-5,120%)" cx="50" cy="70" r="20"/><circle fill="rgb(110%, 0%, 0%)" cx="50" cy="20" r="20"/>'),  # noqa: E501
+    "fill of wide gamuts": Seen('<circle fill="oklch(40% 0.1 20)" cx="50" cy="70" r="20"/><rect fill="color(display-p3 1 0 0 / 0)" width="90" height="40"/>'),  # noqa: E501
+    "fill named colour": Seen('<circle fill="rebeccapurple" cx="50" cy="70" r="20"/>'),
+    "fill opacity negative": Seen('<rect fill-opacity="-1" width="30" height="30"/><circle fill-opacity="2" cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "opacity in groups": Seen('<g opacity="1"><g style="opacity:0"><rect width="30" height="30"/></g><circle cx="50" cy="70" r="20"/></g>'),  # noqa: E501
+    "opacities multiplied": Seen('<g opacity=".04"><rect opacity=".04" width="90" height="90"/></g><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "display upper case": Seen('<rect display="NONE" width="30" height="30"/><circle display="bogus" cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "display on what is referred to": Seen('<defs style="display:none"><path id="g" d="M0 0H30V40H0Z"/></defs><use href="#g"/>'),  # noqa: E501
+    "display none on a clone's target": Seen('<path id="g" display="none" d="M0 0H30V40H0Z"/><use href="#g"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "display none in a clip": Seen('<clipPath id="c"><rect display="none" width="50" height="100"/><rect visibility="hidden" x="50" width="50" height="100"/><rect width="30" height="100"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "defs everywhere": Seen('<g><defs><rect width="90" height="90"/></defs><circle cx="50" cy="70" r="20"/></g>'),
+    "text in defs": Seen('<defs><text id="t">A</text></defs><circle cx="50" cy="70" r="20"/>'),
+    "text span": Seen('<text y="50"><tspan>A</tspan></text>', "text"),
+    "text without fill": Seen('<text y="50" fill="none">A</text><circle cx="50" cy="70" r="20"/>'),
+    "image without a picture": Seen('<image width="50" height="50"/><circle cx="50" cy="70" r="20"/>'),
+    "filter missing": Seen('<circle cx="50" cy="70" r="20" filter="url(#no)"/>'),
+    "blend": Seen('<circle cx="50" cy="70" r="20" style="mix-blend-mode:multiply"/>', "blend"),
+    "marker in a style": Seen('<style>path{marker:url(#m)}</style><marker id="m"><rect width="3" height="3"/></marker><path d="M10 10H50V50"/>', "marker"),  # noqa: E501
+    "use with units": Seen('<defs><path id="g" d="M0 0H30V40H0Z"/></defs><use href="#g" x="10mm" y="25%"/>'),
+    "use of a link and a switch": Seen('<defs><a id="a"><rect width="20" height="20"/></a><switch id="s"><rect width="20" height="20"/></switch></defs><use href="#a"/><use href="#s" x="50"/>'),  # noqa: E501
+    "use of a nested svg": Seen('<defs><svg id="s" x="10" width="20" height="20" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></svg></defs><use href="#s"/><use href="#s" x="40" width="40" height="40"/>'),  # noqa: E501
+    "use of a symbol of a symbol": Seen('<symbol id="a" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol><symbol id="b" viewBox="0 0 20 20"><use href="#a" width="10" height="10"/><rect x="10" y="10" width="10" height="10"/></symbol><use href="#b" x="10" y="10" width="60" height="60"/>'),  # noqa: E501
+    "use of a symbol with percentages": Seen('<symbol id="a"><rect width="50%" height="50%"/></symbol><use href="#a" width="40" height="80"/>'),  # noqa: E501
+    "use transformed and moved": Seen('<defs><g id="g" transform="scale(2)"><rect width="10" height="10"/></g></defs><use href="#g" x="10" y="10" transform="rotate(20)"/>'),  # noqa: E501
+    "use of a clip": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><defs><circle id="g" cx="50" cy="50" r="40" clip-path="url(#c)"/></defs><use href="#g" x="20"/>'),  # noqa: E501
+    "use clipped": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><defs><circle id="g" cx="50" cy="50" r="40"/></defs><use href="#g" x="20" clip-path="url(#c)"/>'),  # noqa: E501
+    "use css inheritance": Seen('<style>use{fill:none} .k{fill:black}</style><defs><path id="g" d="M0 0H30V40H0Z"/></defs><use href="#g"/><use class="k" href="#g" x="50"/>'),  # noqa: E501
+    "two of one id": Seen('<rect id="g" width="20" height="20"/><circle id="g" cx="20" cy="80" r="20"/><use href="#g" x="50"/>'),  # noqa: E501
+    "symbol, max and mid": Seen('<symbol id="s" viewBox="0 0 10 10" preserveAspectRatio="xMaxYMid meet"><circle cx="5" cy="5" r="5"/></symbol><use href="#s" width="80" height="40"/>'),  # noqa: E501
+    "symbol with an offset box": Seen('<symbol id="s" viewBox="-5 -5 10 10"><circle r="5"/></symbol><use href="#s" x="10" y="10" width="40" height="40"/>'),  # noqa: E501
+    "symbol transformed": Seen('<symbol id="s" viewBox="0 0 10 10" transform="translate(20 0)"><circle cx="5" cy="5" r="5"/></symbol><use href="#s" width="40" height="40"/>'),  # noqa: E501
+    "nested svg transformed": Seen('<svg width="40" height="40" transform="translate(30 20)"><circle cx="20" cy="20" r="20"/></svg>'),  # noqa: E501
+    "nested svg in a nested svg": Seen('<svg x="10" y="10" width="80" height="80" viewBox="0 0 40 40"><svg x="50%" y="50%" width="50%" height="50%"><rect width="100%" height="50%"/></svg></svg>'),  # noqa: E501
+    "nested svg, overflow in style": Seen('<svg x="30" y="30" width="30" height="30" style="overflow:visible"><circle r="20"/></svg>'),  # noqa: E501
+    "nested svg, slice": Seen('<svg width="40" height="80" viewBox="0 0 10 10" preserveAspectRatio="xMidYMid slice"><circle cx="5" cy="5" r="5"/></svg>'),  # noqa: E501
+    "switch in a switch": Seen('<switch><g systemLanguage="fr"><rect width="90" height="90"/></g><switch><rect systemLanguage="xx" width="80" height="80"/><circle r="30"/></switch></switch>'),  # noqa: E501
+    "switch of nothing": Seen('<switch><rect systemLanguage="xx" width="90" height="90"/></switch><circle r="30"/>'),
+    "switch with a group hidden": Seen('<switch><g display="none"><rect width="90" height="90"/></g><rect width="80" height="80"/></switch><circle r="30"/>'),  # noqa: E501
+    "required features": Seen('<rect requiredFeatures="http://www.w3.org/TR/SVG11/feature#Shape" width="30" height="30"/>'),  # noqa: E501
+    "clip of a nested svg": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><svg clip-path="url(#c)"><circle cx="50" cy="50" r="40"/></svg>'),  # noqa: E501
+    "clip with percentages": Seen('<clipPath id="c"><rect width="50%" height="50%"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip by box of a group": Seen('<clipPath id="c" clipPathUnits="objectBoundingBox"><rect width=".5" height="1"/></clipPath><g clip-path="url(#c)" transform="translate(10 10)"><rect width="20" height="20"/><circle cx="60" cy="60" r="20"/></g>'),  # noqa: E501
+    "clip by box, transformed": Seen('<clipPath id="c" clipPathUnits="objectBoundingBox" transform="translate(10 0)"><rect width=".5" height="1"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip with a group in it": Seen('<clipPath id="c"><g><rect width="90" height="90"/></g><rect width="20" height="90"/></clipPath><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip transformed child": Seen('<clipPath id="c"><rect width="40" height="40" transform="rotate(45)"/></clipPath><rect width="100" height="100" clip-path="url(#c)"/>'),  # noqa: E501
+    "clip of even-odd": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><path clip-path="url(#c)" fill-rule="evenodd" d="M20 20H80V80H20ZM35 35H65V65H35Z"/>'),  # noqa: E501
+    "clip by something else": Seen('<mask id="c"><rect width="50" height="100" fill="#fff"/></mask><circle cx="50" cy="50" r="40" clip-path="url(#c)"/>'),  # noqa: E501
+    "clips twice": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><clipPath id="d"><rect width="100" height="50"/></clipPath><g clip-path="url(#c)"><circle cx="50" cy="50" r="40" clip-path="url(#d)"/></g>'),  # noqa: E501
+    "clip and mask": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><mask id="m"><rect width="100" height="50" fill="white"/></mask><circle cx="50" cy="50" r="40" clip-path="url(#c)" mask="url(#m)"/>'),  # noqa: E501
+    "mask by use": Seen('<defs><circle id="g" cx="50" cy="50" r="30" fill="#fff"/></defs><mask id="m"><use href="#g"/></mask><rect width="100" height="100" mask="url(#m)"/>'),  # noqa: E501
+    "mask in units": Seen('<mask id="m" maskUnits="userSpaceOnUse" x="20" y="20" width="40" height="40"><rect width="100" height="100" fill="#fff"/></mask><rect width="100" height="100" mask="url(#m)"/>'),  # noqa: E501
+    "mask clipped": Seen('<clipPath id="c"><rect width="50" height="100"/></clipPath><mask id="m"><rect width="100" height="100" fill="#fff" clip-path="url(#c)"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask of a mask": Seen('<mask id="n"><rect width="100" height="50" fill="#fff"/></mask><mask id="m" mask="url(#n)"><rect width="50" height="100" fill="#fff"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask transformed element": Seen('<mask id="m"><rect width="20" height="100" fill="#fff"/></mask><rect width="40" height="40" transform="translate(20 20) rotate(10)" mask="url(#m)"/>'),  # noqa: E501
+    "mask that is not there": Seen('<circle cx="50" cy="50" r="40" mask="url(#no)"/>'),
+    "mask half opaque": Seen('<mask id="m"><rect width="50" height="100" fill="white" opacity=".5"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>', "mask"),  # noqa: E501
+    "mask with a stroke": Seen('<mask id="m"><path stroke="white" stroke-width="20" d="M0 50H100"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>', "strokes"),  # noqa: E501
+    "lengths, odd ones": Seen('<rect x="1e1" y="+10" width="20PX" height=".25in"/><rect x="50" y="50" width="10,5" height="20"/><rect x="50" y="60" width="5 0" height="20"/><rect x=" 60 " y="20" width="20" height="20"/>'),  # noqa: E501
+    "length with a space before its unit": Seen('<rect width="50 %" height="50"/><circle cx="70" cy="70" r="20"/>'),
+    "lengths of the window": Seen('<rect width="10vw" height="50"/>', "vw"),
+    "circle percent radius": Seen('<circle cx="50" cy="50" r="25%"/>', root='viewBox="0 0 200 100"'),
+    "rect auto": Seen('<rect width="auto" height="50"/><circle cx="70" cy="70" r="20"/>'),
+    "line and polyline": Seen('<line x1="0" y1="0" x2="90" y2="90"/><polyline points="10 10 90 10 90 90"/>'),
+    "polygon of one point": Seen('<polygon points="10,10"/><polygon points=""/><polygon/><circle cx="70" cy="70" r="20"/>'),  # noqa: E501
+    "path with references": Seen('<path d="M20&#x20;20&#10;H80\n\tV80 H20 z "/>'),
+    "path z and on": Seen('<path d="M10 10zl40 0 0 40z M60 60 h30 v30 z h-20 v-10 z"/>'),
+    "path comma after a command": Seen('<path d="M20 20H80V80H20Z L,5 5"/>', "path data"),
+    "path two commas": Seen('<path d="M20 20H80V80H20ZM5,,5H9V9"/>', "path data"),
+    "path number with a point at its end": Seen('<path d="M20 20H80V80.H20Z"/>', "path data"),
+    "path unknown command": Seen('<path d="M20 20H80V80H20ZB5 5"/>', "path data"),
+    "path leading text": Seen('<path d="x M20 20H80V80Z"/><circle cx="20" cy="70" r="20"/>', "path data"),
+    "path huge": Seen('<path d="M20 20H80V80L1e999 1"/>', "path data"),
+    "path arcs in a row": Seen('<path d="M30 50a20 20 0 1 0 40 0 20 20 0 1 0-40 0zm10 0a10 10 0 1 1 20 0 10 10 0 1 1-20 0z"/>'),  # noqa: E501
+    "path arcs, even-odd": Seen('<path fill-rule="evenodd" d="M12 2a10 10 0 1010 10A10 10 0 0012 2zm0 4a6 6 0 106 6 6 6 0 00-6-6z"/>', root='viewBox="0 0 24 24"'),  # noqa: E501
+    "path arc, a hair": Seen('<path d="M10 50A40 40 0 0 1 90 50A40 40 0 0 1 90 50.0000001Z"/>'),
+    "path T after M": Seen('<path d="M10 10T50 10 90 50L10 90Z"/>'),
+    "path S after Q": Seen('<path d="M10 10Q50 0 50 50S90 50 90 90L10 90Z"/>'),
+    "bow tie": Seen('<path d="M10 10L90 90V10L10 90Z"/>'),
+    "bow tie, even-odd": Seen('<path fill-rule="evenodd" d="M10 10L90 90V10L10 90Z"/>'),
+    "rings that touch": Seen('<path fill-rule="evenodd" d="M10 10H90V90H10ZM10 30H50V70H10Z"/>'),
+    "even-odd, four deep, mixed directions": Seen('<path fill-rule="evenodd" d="M0 0H100V100H0ZM10 10V90H90V10ZM20 20H80V80H20ZM30 30V70H70V30Z"/>'),  # noqa: E501
+    "nonzero, same way, three deep": Seen('<path d="M0 0H100V100H0ZM10 10H90V90H10ZM20 20V80H80V20Z"/>'),
+    "counters in two shapes": Seen('<path d="M0 0H60V60H0ZM20 20V40H40V20Z"/><path d="M40 40V100H100V40ZM60 60H80V80H60Z"/>'),  # noqa: E501
+    "a hole filled by another shape": Seen('<path fill-rule="evenodd" d="M10 10H90V90H10ZM30 30H70V70H30Z"/><path d="M40 40V60H60V40Z"/>'),  # noqa: E501
+    "transform none": Seen('<rect width="30" height="30" transform="none"/><rect x="50" width="30" height="30" transform=""/>'),  # noqa: E501
+    "transform with units": Seen('<rect width="30" height="30" transform="translate(10px,20px)"/>', "transform"),
+    "transform upper case": Seen('<rect width="30" height="30" transform="SCALE(2)"/>', "transform"),
+    "transform trailing": Seen('<rect width="30" height="30" transform="translate(20) ,scale(1.5) rotate(10),"/>', "transform"),  # noqa: E501
+    "transform matrix short": Seen('<rect width="30" height="30" transform="matrix(1 0 0 1 5)"/>', "transform"),
+    "transform scale and skew": Seen('<g transform="scale(.5,-1) translate(0,-100)"><circle cx="50" cy="50" r="40" transform="skewX(30)"/></g>'),  # noqa: E501
+    "transform on the root": Seen('<rect width="30" height="30"/>', "whole drawing", f'{BOX} transform="translate(20 20)"'),
+    "transform percent": Seen('<rect width="30" height="20" style="transform:translate(50%,50%)"/>'),
+    "transform percent of its box": Seen('<rect x="10" width="30" height="20" style="transform:translate(50%,50%);transform-box:fill-box"/>'),  # noqa: E501
+    "transform origin keywords": Seen('<rect x="30" y="30" width="30" height="20" style="transform:scale(.5);transform-origin:right bottom"/>'),  # noqa: E501
+    "transform origin one value": Seen('<rect x="30" y="30" width="30" height="20" style="transform:scale(.5);transform-origin:top"/>'),  # noqa: E501
+    "view box with commas": Seen('<circle cx="0" cy="0" r="40"/>', root='viewBox="-50,-50,100,100"'),
+    "one side of a size": Seen('<circle cx="50" cy="50" r="40"/>', root='width="120" viewBox="0 0 100 100"'),
+    "aspect of the root": Seen('<circle cx="50" cy="50" r="40"/>', root='width="150" height="100" preserveAspectRatio="xMinYMin" viewBox="0 0 100 100"'),  # noqa: E501
+    "processing instruction": Seen(f'<?xml version="1.0" standalone="no"?><!-- a --><?xpacket x?><svg {HEAD} {BOX}><path d="{SQUARE}"/></svg>'),  # noqa: E501
+    "xml space": Seen('<g xml:space="preserve"><rect width="30" height="30"/></g>'),
+    "inkscape": Seen('<sodipodi:namedview xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd" id="n"/><g xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer" style="display:inline"><path style="fill:#000000;fill-opacity:1;stroke:none" d="m 20,20 h 60 v 60 h -60 z" inkscape:connector-curvature="0"/></g><g style="display:none"><rect width="100" height="100"/></g>'),  # noqa: E501
+    "illustrator": Seen(f'<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/Graphics/SVG/1.1/DTD/svg11.dtd" [<!ENTITY ns_svg "http://www.w3.org/2000/svg"><!ENTITY ns_ai "http://ns.adobe.com/AdobeIllustrator/10.0/">]><svg xmlns="&ns_svg;" xmlns:i="&ns_ai;" {BOX} xml:space="preserve"><style type="text/css">.st0{{fill:none;}} .st1{{fill-rule:evenodd;clip-rule:evenodd;}}</style><switch><foreignObject requiredExtensions="&ns_ai;" width="1" height="1"/><g i:extraneous="self"><rect class="st0" width="100" height="100"/><path class="st1" d="{SQUARE}{HOLE}"/></g></switch></svg>'),  # noqa: E501
+    "figma": Seen('<g clip-path="url(#clip0)"><path fill-rule="evenodd" clip-rule="evenodd" d="M20 20H80V80H20ZM35 35H65V65H35Z" fill="black"/></g><defs><clipPath id="clip0"><rect width="100" height="100" fill="white"/></clipPath></defs>', root='width="100" height="100" viewBox="0 0 100 100" fill="none"'),  # noqa: E501
+    "material": Seen('<path d="M0 0h24v24H0z" fill="none"/><path d="M12 2C6.48 2 2 6.48 2 12s4.48 10 10 10 10-4.48 10-10S17.52 2 12 2zm-2 15l-5-5 1.41-1.41L10 14.17l7.59-7.59L19 8l-9 9z"/>', root='height="24" width="24" viewBox="0 0 24 24"'),  # noqa: E501
+    "sketch": Seen('<g stroke="none" stroke-width="1" fill="none" fill-rule="evenodd"><g transform="translate(-10, -10)" fill="#000000" fill-rule="nonzero"><polygon points="30 30 90 30 90 90 30 90"/></g></g>'),  # noqa: E501
 }

@@ -139,11 +139,6 @@ class Cutting:
         lengths = place.lengths.in_box() if units == "objectBoundingBox" else place.lengths
         x, y, width, height = (lengths.of(target.get(name) or whole, side) or 0.0 for name, whole, side in REGION)
         area = plane.both(area, self._box((x, y, width, height), place.matrix @ frame))
-        own = structure.resource(reference(style["mask"]))
-        if own is not None and own.tag == "mask" and own not in self._active:
-            self._active.append(own)
-            area = plane.both(area, self._mask(own, element, place))
-            self._active.pop()
         return area
 
     def _in_units(self, units: str | None, element: Any, place: Place) -> FloatArray | None:

@@ -11,7 +11,7 @@ from ....types import INCHES
 from .unread import Unread
 
 NUMBER = r"[+-]?(?:[0-9]*\.[0-9]+|[0-9]+)(?:[eE][+-]?[0-9]+)?"
-LENGTH = re.compile(rf"\s*({NUMBER})\s*([A-Za-z]*|%)\s*")
+LENGTH = re.compile(rf"\s*({NUMBER})([A-Za-z]*|%)\s*")
 FIRST, NEXT = re.compile(rf"({NUMBER})"), re.compile(rf"\s*,?\s*({NUMBER})")
 UNITS = {name: inches / INCHES["px"] for name, inches in INCHES.items()} | {"q": 96 / 101.6, "": 1.0}
 """Absolute units, in CSS pixels."""

@@ -75,11 +75,12 @@ class Drawn:
         from svgpathtools import Arc  # imports SciPy, which most drawings do not need
 
         try:
-            arc = Arc(complex(*self.here), complex(rx, ry), turn, large, sweep, complex(*to))
-            cubics = [[(p.real, p.imag) for p in map(complex, each)] for each in arc_cubics(arc)]
+            with np.errstate(all="ignore"):
+                arc = Arc(complex(*self.here), complex(rx, ry), turn, large, sweep, complex(*to))
+                cubics = [[(p.real, p.imag) for p in map(complex, each)] for each in arc_cubics(arc)]
         except (ArithmeticError, ValueError, AssertionError):
             cubics = []
-        if not all(map(math.isfinite, np.ravel(cubics))) or not cubics:
+        if not cubics or not np.isfinite(cubics).all():
             self.add(to)  # too flat or too far for doubles
             return
         cubics[-1][-1] = to

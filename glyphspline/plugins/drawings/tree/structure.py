@@ -129,6 +129,9 @@ class Structure:
         inner = replace(place, style=style, lengths=lengths, opacity=opacity)
         if transformed:
             inner = replace(inner, matrix=place.matrix @ self.transform(element, inner))
+            if tag == "use":
+                x, y = (length(name, self.get(element, style), lengths) or 0.0 for name in "xy")
+                inner = replace(inner, matrix=inner.matrix @ translation(x, y))
         if tag in SHAPES:
             found = self._leaf(element, inner)
         elif place.mode == "clip" and tag != "use":
@@ -143,6 +146,8 @@ class Structure:
     def _name(self, element: Any, style: Style, line: int) -> None:
         """Name an element that is not read, if it would show something."""
         has = {"text": "".join(element.itertext()).strip(), "image": element.get("href")}.get(element.tag, True)
+        if element.tag == "text" and style["fill"] == "none" and style["stroke"] == "none":
+            return
         if has and style["visibility"] == "visible":
             self.unread.add(NAMED[element.tag], line)
 
@@ -194,10 +199,8 @@ class Structure:
             return []
         assert place.style is not None
         get = self.get(element, place.style)
-        x, y = (length(name, get, place.lengths) or 0.0 for name in "xy")
         size = (get("width"), get("height")) if target.tag in ("symbol", "svg") else None
-        inside = replace(place, matrix=place.matrix @ translation(x, y), clones=(*place.clones, target), size=size)
-        return self.draw(target, inside)
+        return self.draw(target, replace(place, clones=(*place.clones, target), size=size))
 
     def _is_around(self, element: Any, inner: Any) -> bool:
         while inner is not None and inner is not element:
@@ -280,7 +283,7 @@ class Structure:
         if colour is None:
             return None
         if not self.strokes:
-            self.unread.add("strokes", line)
+            self.unread.add("strokes, which --location strokes draws", line)
             return None
         if style["vector-effect"] == "non-scaling-stroke":
             self.unread.add("strokes that do not scale, drawn as if they did", line)
@@ -296,8 +299,10 @@ class Structure:
         assert style is not None
         name = "patternTransform" if element.tag == "pattern" else "transform"
         text = style.get("transform") or element.get(name) or ""
-        if not text.strip():
+        if text.strip() in ("", "none"):
             return np.eye(3)
+        if element is self.document.root:
+            self.unread.add("a transform of the whole drawing, by its units", lengths.line)
         box: Box = (0.0, 0.0, lengths.width, lengths.height)
         if style["transform-box"] in ("fill-box", "content-box", "stroke-box", "border-box"):
             box = self.box(element, place) or (0.0, 0.0, 0.0, 0.0)

@@ -35,6 +35,9 @@ FONT_SIZES = {
     "xx-small": 9, "x-small": 10, "small": 13, "medium": 16, "large": 18, "x-large": 24, "xx-large": 32,
 }  # fmt: skip
 
+SHORT = {"marker": ("marker-start", "marker-mid", "marker-end")}
+"""Properties that stand for several."""
+
 MOVING = {"translate", "rotate", "scale", "offset-path", "animation", "animation-name", "zoom", "perspective"}
 """Properties that place elements, which are named where they are set."""
 
@@ -113,7 +116,8 @@ class Cascade:
             elif value.lower() in WIDE:
                 _take_wide(style, before, name, value.lower())
             elif VALID.get(name, bool)(value):
-                style[name] = value
+                for each in SHORT.get(name, (name,)):
+                    style[each] = value
         style["font-size"] = f"{self._font_size(style['font-size'], before['font-size'])!r}px"
         if around is None:
             self.root_size = font_size(style)
