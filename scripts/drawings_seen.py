@@ -46,7 +46,7 @@ NOT_PLAIN = re.compile(
 
 
 class Verdict(NamedTuple):
-    """How a drawing was read: the mean difference of ink (None: not read at all), what is said, and the share of ink."""
+    """How a drawing was read: the mean difference of ink (None: not at all), what is said, and the share of ink."""
 
     difference: float | None
     said: tuple[str, ...]

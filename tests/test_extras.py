@@ -59,7 +59,7 @@ def found(place: Path) -> Any:
     """The exit status and standard error of each command, where no extra is installed and nothing is compiled."""
     (place / "made.glyphs").write_text('{\n.appVersion = "3208";\n}\n')
     (place / "styled.svg").write_text(
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><style>.a{fill:none}</style><path d="M0 0H9V9Z"/></svg>'
+        '<svg xmlns="http://www.w3.org/2000/svg"><style>.a{fill:none}</style><path d="M0 0H9V9Z"/></svg>'
     )
     commands = {
         extra: [*words, *([] if extra == "view" else ["--out", f"out-{extra}"])] for extra, words in COMMANDS.items()

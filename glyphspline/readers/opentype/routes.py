@@ -58,8 +58,10 @@ class Face:
         font, face = self.font, self.face
         found = {
             "SVG ": lambda: face.has_color_svg and len(face.get_glyph_color_svg(gid).data),
-            "COLR": lambda: (face.has_color_layers and face.get_glyph_color_layers(gid))
-            or (face.has_color_paint and face.glyph_has_color_paint(gid)),
+            "COLR": lambda: (
+                (face.has_color_layers and face.get_glyph_color_layers(gid))
+                or (face.has_color_paint and face.glyph_has_color_paint(gid))
+            ),
             "CBDT": lambda: face.has_color_png and len(font.get_glyph_color_png(gid).data),
         }
         found["sbix"] = found["CBDT"]
