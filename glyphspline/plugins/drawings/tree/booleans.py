@@ -6,17 +6,30 @@ They work in single precision, so that shapes are brought to some thousand units
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any, TypeAlias
 
+import numpy as np
+
 from ....errors import GlyphsplineError
 from ....extras import need
+from ....types import BoolArray, FloatArray
 from .painted import Shape, placed
 from .path_data import Path, Subpath
-from .transforms import Box, translation
+from .transforms import translation
 
 SIZE = 4096.0
 """Height of a view in the units of the operations, about: single precision has a thousandth of them."""
+
+MOST_SEGMENTS, MOST_MEETINGS, MOST_WORK = 10_000, 100_000, 2_000_000
+"""Limits of one operation, of segments and of pairs that may cross, and of all: a scribble takes Skia hours."""
+
+EACH = 100
+"""What an operation costs besides, in such pairs."""
+
+CHUNK = 512
+"""Segments that are compared with all others at a time."""
 
 CHANGED = 1e-6
 """Share of an area from which it counts as changed."""
@@ -38,7 +51,7 @@ class Plane:
 
     def __init__(self, x: float, y: float, height: float) -> None:
         self._x, self._y = x, y
-        self.scale = 2.0 ** round(math.log2(SIZE / height))
+        self.scale, self._work = 2.0 ** round(math.log2(SIZE / height)), 0
 
     @cached_property
     def _skia(self) -> Any:
@@ -74,21 +87,22 @@ class Plane:
         """The same area without overlaps, filled by the nonzero rule.
 
         Raises:
-            CutError: Skia finds no result.
+            CutError: Skia finds no result, or would take too long for it.
+            GlyphsplineError: all that was asked of it is too much.
         """
-        return self._tried(lambda: simplified(area))
+        return self._tried(lambda: simplified(area), area)
 
     def united(self, areas: list[Area]) -> Area:
         """What any of some areas covers; raises as :meth:`simple`."""
-        return self._tried(lambda: self._united(areas))
+        return self._tried(lambda: self._united(areas), *areas)
 
     def both(self, one: Area, other: Area) -> Area:
         """What both areas cover; raises as :meth:`simple`."""
-        return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.INTERSECTION))
+        return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.INTERSECTION), one, other)
 
     def without(self, one: Area, other: Area) -> Area:
         """What the first area covers and the second does not; raises as :meth:`simple`."""
-        return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.DIFFERENCE))
+        return self._tried(lambda: self._skia.op(one, other, self._skia.PathOp.DIFFERENCE), one, other)
 
     def _united(self, areas: list[Area]) -> Area:
         """All that are simple run alike, so that they are one area by the nonzero rule."""
@@ -97,11 +111,37 @@ class Plane:
             found.addPath(simplified(area))
         return simplified(found)
 
-    def _tried(self, make: Any) -> Area:
+    def _tried(self, make: Callable[[], Area], *areas: Area) -> Area:
+        work = meetings(areas)
+        self._work += work + EACH
+        if work > MOST_MEETINGS:
+            raise CutError("path operations on too many crossings")
+        if self._work > MOST_WORK:
+            raise GlyphsplineError("more to cut and to unite than is done for one drawing")
         try:
             return make()
         except self._skia.PathOpsError as error:
             raise CutError("path operations found no result") from error
+
+
+def meetings(areas: Sequence[Area]) -> int:
+    """How many segments there are, and pairs of them that may cross: Skia looks at each."""
+    boxes, here = list[tuple[float, ...]](), (0.0, 0.0)
+    for area in areas:
+        for _, points in area:
+            if len(points) > 0:
+                x, y = zip(here, *points, strict=True)
+                boxes.append((min(x), min(y), max(x), max(y)))
+                here = points[-1]
+    if len(boxes) > MOST_SEGMENTS:
+        return MOST_MEETINGS + 1
+    left, bottom, right, top = np.array(boxes).reshape(-1, 4).T
+    met = len(boxes)
+    for k in range(0, len(boxes), CHUNK):
+        part = slice(k, k + CHUNK)
+        across = (left[part, None] < right) & (left < right[part, None])
+        met += int((across & (bottom[part, None] < top) & (bottom < top[part, None])).sum()) // 2
+    return met
 
 
 def simplified(area: Area) -> Area:
@@ -145,6 +185,7 @@ def size_of(area: Area) -> float:
     return abs(float(area.area))
 
 
-def overlap(one: Box | Any, other: Box | Any) -> bool:
-    """Whether two boxes, each left, bottom, right and top, have more than a line in common."""
-    return bool(one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3])
+def overlap(box: FloatArray, boxes: FloatArray) -> BoolArray:
+    """(n,) whether a box (4,), its left, bottom, right and top, has more than a line in common with others (n, 4)."""
+    found: BoolArray = ((box[:2] < boxes[:, 2:]) & (boxes[:, :2] < box[2:])).all(axis=1)
+    return found

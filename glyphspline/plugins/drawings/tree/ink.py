@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -29,6 +28,9 @@ CHORDS = 24
 LINES = 9
 """Scan lines through each contour."""
 
+MOST_CROSSINGS = 4_000_000
+"""Crossings of scan lines that are looked at."""
+
 NARROW = 5e-4
 """Share of a shape's width: what is narrower says nothing of inside and outside."""
 
@@ -38,7 +40,7 @@ WHITE = 254.5 / 255
 LOST = 1e-3
 """Share of an area that goes unnoticed where colours lie upon each other."""
 
-MOST_PAIRS = 2_000
+MOST_PAIRS = 500
 """Pairs of shapes that are looked at for colours upon each other."""
 
 
@@ -78,10 +80,10 @@ def ink_of(shapes: Sequence[Shape], structure: Structure) -> list[Chain]:
     chains = [chains_of(shape) for shape in shapes]
     if len(shapes) == 1 and shapes[0].rule == "nonzero":
         return chains[0]
-    boxes = [box_of(each) for each in chains]
+    boxes = np.array([box_of(each) for each in chains]).reshape(-1, 4)
     found = list[list[Chain]]()
     for k, (shape, own) in enumerate(zip(shapes, chains, strict=True)):
-        meets = any(overlap(boxes[k], other) for j, other in enumerate(boxes) if j != k)
+        meets = int(overlap(boxes[k], boxes).sum()) > 1
         directed = directed_of(own, shape.rule)
         if directed is None and (meets or shape.rule != "nonzero"):
             directed = united(shape, structure)
@@ -157,9 +159,9 @@ def crossings(chains: list[Chain]) -> tuple[IntArray, IntArray, IntArray, IntArr
     shares = (np.arange(LINES) + 0.5 + 0.1 * np.sin(np.arange(LINES))) / LINES
     at = np.unique([points[:, 1].min() + shares * np.ptp(points[:, 1]) for points in outlines])
     first, last = np.searchsorted(at, np.sort([start[:, 1], stop[:, 1]], axis=0))
-    side = np.repeat(np.arange(len(start)), last - first)
-    if not len(side):
+    if not 0 < (last - first).sum() <= MOST_CROSSINGS:
         return None
+    side = np.repeat(np.arange(len(start)), last - first)
     line = np.arange(len(side)) - np.repeat(np.cumsum(last - first) - last, last - first)
     rise = stop[side, 1] - start[side, 1]
     x = start[side, 0] + (at[line] - start[side, 1]) / rise * (stop[side, 0] - start[side, 0])
@@ -193,40 +195,46 @@ def on_paper(shapes: Sequence[Shape], structure: Structure) -> list[Shape]:
     white = [min(shape.colour[:3]) >= WHITE for shape in shapes]
     if all(white) or not any(white):
         return list(shapes)
-    plane, found = structure.cutting.plane, list[Shape]()
+    found, boxes = list[Shape](), np.empty((0, 4))
     for shape, is_white in zip(shapes, white, strict=True):
+        box = np.array([box_of(chains_of(shape))])
         if not is_white:
-            found.append(shape)
+            found, boxes = [*found, shape], np.concatenate([boxes, box])
             continue
         structure.unread.note("white is taken for the paper", shape.line)
-        box, left = box_of(chains_of(shape)), list[Shape]()
-        for below in found:
-            if not overlap(box, box_of(chains_of(below))):
-                left.append(below)
-                continue
-            try:
-                rest = structure.cutting.changed(below, plane.without(plane.area(below), plane.area(shape)))
-            except CutError:
-                structure.unread.add("white that cannot be cut out", shape.line)
-                rest = below
-            left += [] if rest is None else [rest]
-        found = left
+        left = [
+            without(below, shape, structure) if met else below
+            for below, met in zip(found, overlap(box[0], boxes), strict=True)
+        ]
+        boxes = boxes[[below is not None for below in left]]
+        found = [below for below in left if below is not None]
     return found
+
+
+def without(below: Shape, shape: Shape, structure: Structure) -> Shape | None:
+    """What a shape leaves of another below it; None if nothing."""
+    plane = structure.cutting.plane
+    try:
+        return structure.cutting.changed(below, plane.without(plane.area(below), plane.area(shape)))
+    except CutError:
+        structure.unread.add("white that cannot be cut out", shape.line)
+        return below
 
 
 def name_colours(shapes: Sequence[Shape], structure: Structure) -> None:
     """Name colours that lie upon each other: what is between them does not show in one ink."""
-    if len({shape.colour[:3] for shape in shapes}) < 2:
+    colours = [shape.colour[:3] for shape in shapes]
+    if len({*colours}) < 2:
         return
-    boxes = [box_of(chains_of(shape)) for shape in shapes]
-    pairs = 0
-    for j, k in combinations(range(len(shapes)), 2):
-        if shapes[j].colour[:3] == shapes[k].colour[:3] or not overlap(boxes[j], boxes[k]):
-            continue
-        pairs += 1
-        if pairs > MOST_PAIRS or shows_through(shapes[j], shapes[k], structure):
-            structure.unread.add("colours upon each other, drawn as one ink", shapes[k].line)
-            return
+    boxes, pairs = np.array([box_of(chains_of(shape)) for shape in shapes]), 0
+    for k in range(len(shapes)):
+        for j in np.nonzero(overlap(boxes[k], boxes[:k]))[0].tolist():
+            if colours[j] == colours[k]:
+                continue
+            pairs += 1
+            if pairs > MOST_PAIRS or shows_through(shapes[j], shapes[k], structure):
+                structure.unread.add("colours upon each other, drawn as one ink", shapes[k].line)
+                return
 
 
 def shows_through(below: Shape, above: Shape, structure: Structure) -> bool:
