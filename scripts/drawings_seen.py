@@ -38,8 +38,9 @@ ROOMS = ("structure", "shapes", "painting", "masking")
 FRAME = re.compile(rb"""<rect\s+id=["']frame["'][^>]*/>""")
 """A stroked rectangle that most of them have around the picture."""
 
-NOT_PLAIN = re.compile(
-    rb"<(?:text|image|filter|marker|pattern|foreignObject|animate|set)\b|stroke(?:-width)?\s*[=:]|mix-blend-mode|"
+STROKES = rb"stroke(?:-width)?\s*[=:]"
+NOT_PLAIN = (
+    rb"<(?:text|image|filter|marker|pattern|foreignObject|animate|set)\b|mix-blend-mode|"
     rb"opacity\s*[=:]\s*[\"']?\s*0?\.|enable-background|\bcontext-|isolation|filter\s*[=:]"
 )
 """What drawings have that are more than filled shapes."""
@@ -99,8 +100,9 @@ def verdict_on(page: Any, file: Path, work: Path, strokes: bool) -> Verdict:
     return Verdict(apart, outline.unread, ink)
 
 
-def files_of(folder: Path | None, work: Path) -> Iterator[tuple[str, Path, str]]:
-    """Names of drawings, their files, and what each is to name; "?" is not known."""
+def files_of(folder: Path | None, work: Path, strokes: bool) -> Iterator[tuple[str, Path, str]]:
+    """Names of drawings, their files, and what each is to name; "?" is not known. Of resvg's those with strokes alone,
+    or those without."""
     if folder is None:
         for name, each in SEEN.items():
             file = work / f"{re.sub(r'[^a-z0-9]+', '-', name)}.svg"
@@ -110,7 +112,7 @@ def files_of(folder: Path | None, work: Path) -> Iterator[tuple[str, Path, str]]
     for room in ROOMS:
         for file in sorted((folder / room).rglob("*.svg")):
             data = FRAME.sub(b"", file.read_bytes())
-            if not NOT_PLAIN.search(data):
+            if not re.search(NOT_PLAIN, data) and bool(re.search(STROKES, data)) == strokes:
                 (work / "one.svg").write_bytes(data)
                 yield str(file.relative_to(folder)), work / "one.svg", "?"
 
@@ -132,7 +134,7 @@ def main() -> None:
             executable_path=shutil.which("chromium"), args=["--no-sandbox"] if root else []
         )
         page = browser.new_page(viewport={"width": SIZE, "height": SIZE})
-        for name, file, named in files_of(call.folder, Path(folder)):
+        for name, file, named in files_of(call.folder, Path(folder), call.strokes):
             found = verdict_on(page, file, Path(folder), call.strokes)
             is_drawn = found.difference is not None and found.difference < NEAR
             right = (

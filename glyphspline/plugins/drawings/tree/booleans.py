@@ -187,5 +187,4 @@ def size_of(area: Area) -> float:
 
 def overlap(box: FloatArray, boxes: FloatArray) -> BoolArray:
     """(n,) whether a box (4,), its left, bottom, right and top, has more than a line in common with others (n, 4)."""
-    found: BoolArray = ((box[:2] < boxes[:, 2:]) & (boxes[:, :2] < box[2:])).all(axis=1)
-    return found
+    return np.all((box[:2] < boxes[:, 2:]) & (boxes[:, :2] < box[2:]), axis=1)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeAlias
 
 from .document import Document
-from .lengths import LENGTH, Lengths, share
+from .lengths import LENGTH, NUMBER, Lengths, share
 from .paint import is_colour, is_paint
 from .sheets import Rules, declarations
 from .unread import Unread
@@ -80,7 +80,7 @@ VALID: Mapping[str, Callable[[str], bool]] = {
     ),
     "stroke-width": _is_size, "stroke-linecap": _one_of("butt", "round", "square"),
     "stroke-linejoin": _one_of("miter", "round", "bevel", "miter-clip", "arcs"),
-    "stroke-miterlimit": lambda value: _is_size(value) and float((LENGTH.fullmatch(value) or [0, 0])[1]) >= 0,
+    "stroke-miterlimit": lambda value: re.fullmatch(rf"{NUMBER}", value) is not None and float(value) >= 0,
     "overflow": _one_of("visible", "hidden", "scroll", "auto", "clip"),
     "clip-path": _is_reference, "mask": _is_reference, "filter": _is_reference,
     **dict.fromkeys(("x", "y", "cx", "cy"), _is_css_length),
