@@ -392,6 +392,67 @@ SEEN = {
     "figma": Seen('<g clip-path="url(#clip0)"><path fill-rule="evenodd" clip-rule="evenodd" d="M20 20H80V80H20ZM35 35H65V65H35Z" fill="black"/></g><defs><clipPath id="clip0"><rect width="100" height="100" fill="white"/></clipPath></defs>', root='width="100" height="100" viewBox="0 0 100 100" fill="none"'),  # noqa: E501
     "material": Seen('<path d="M0 0h24v24H0z" fill="none"/><path d="M12 2C6.48 2 2 6.48 2 12s4.48 10 10 10 10-4.48 10-10S17.52 2 12 2zm-2 15l-5-5 1.41-1.41L10 14.17l7.59-7.59L19 8l-9 9z"/>', root='height="24" width="24" viewBox="0 0 24 24"'),  # noqa: E501
     "sketch": Seen('<g stroke="none" stroke-width="1" fill="none" fill-rule="evenodd"><g transform="translate(-10, -10)" fill="#000000" fill-rule="nonzero"><polygon points="30 30 90 30 90 90 30 90"/></g></g>'),  # noqa: E501
+    # And others
+    "css escapes": Seen('<style>.a\\:b{fill:none} #\\31 x{fill:none}</style><rect class="a:b" width="30" height="30"/><rect id="1x" x="40" width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css case of elements": Seen('<style>RECT{fill:none} circle{FILL:None}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css any namespace": Seen('<style>*|rect{fill:none}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css nth-last-child": Seen('<style>g *:nth-last-child(1){fill:none} g > :nth-child(2n+1 of .x){fill:none}</style><g><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/></g>'),  # noqa: E501
+    "css classes apart": Seen('<style>[class~=a]{fill:none}</style><rect class="b\t a\nc" width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css media not print": Seen('<style>@media not print{rect{fill:none}} @media screen, print{.a{fill:none}} @media only screen and (orientation:landscape){.b{fill:none}}</style><rect width="30" height="30"/><rect class="a" x="40" width="30" height="30"/><circle cx="50" cy="70" r="20"/>', "media"),  # noqa: E501
+    "css wide words": Seen('<g fill="none" visibility="hidden"><rect style="fill:revert;visibility:visible" width="30" height="30"/><rect style="fill:initial;visibility:inherit" x="40" width="30" height="30"/></g><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css descendant of the root": Seen('<style>svg rect{fill:none} svg svg rect{fill:black}</style><rect width="30" height="30"/><svg><rect x="50" width="30" height="30"/></svg>'),  # noqa: E501
+    "css variable in a variable": Seen('<style>svg{--a:none;--b:var(--a)} rect{fill:var(--b)} circle{fill:var(--no)}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css shorthand of nothing": Seen('<style>rect{fill:none;fill:url(#no) , red}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "css colours of zero opacity": Seen('<rect style="fill:rgb(0 0 0 / .0)" width="30" height="30"/><rect style="fill:#FFF0" x="40" width="30" height="30"/><rect style="fill:hsl(120deg 50% 50% / 0)" x="40" y="40" width="30" height="30"/><circle cx="20" cy="70" r="20"/>'),  # noqa: E501
+    "css display block": Seen('<rect style="display:block" width="30" height="30"/><g style="display:contents"><circle cx="20" cy="70" r="20"/></g>'),  # noqa: E501
+    "root hidden": Seen('<rect width="30" height="30"/><circle visibility="visible" cx="50" cy="70" r="20"/>', root=f'{BOX} visibility="hidden"'),  # noqa: E501
+    "root without opacity": Seen('<rect width="30" height="30"/>', root=f'{BOX} opacity="0"'),
+    "root clipped": Seen('<clipPath id="c"><rect width="20" height="100"/></clipPath><rect width="30" height="30"/>', "whole", f'{BOX} clip-path="url(#c)"'),  # noqa: E501
+    "root with a place": Seen('<rect width="30" height="30"/>', root=f'{BOX} x="20" y="30"'),
+    "root with a rule": Seen('<path d="M20 20H80V80H20ZM35 35H65V65H35Z"/>', root=f'{BOX} fill-rule="EvenOdd"'),
+    "stroke none in a style": Seen('<style>rect{stroke:none}</style><rect stroke="red" width="30" height="30"/>'),
+    "stroke current colour": Seen('<g color="transparent"><rect stroke="currentColor" width="30" height="30"/></g>'),
+    "stroke of a paint that is not there": Seen('<rect stroke="url(#no)" width="30" height="30"/>'),
+    "clip of a line": Seen('<clipPath id="c"><line x2="90" y2="90"/></clipPath><rect width="90" height="90" clip-path="url(#c)"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "clip with a rule around it": Seen('<g clip-rule="evenodd"><clipPath id="c"><path d="M20 20H80V80H20ZM35 35H65V65H35Z"/></clipPath></g><rect width="90" height="90" clip-path="url( #c )"/>'),  # noqa: E501
+    "clip by a symbol": Seen('<symbol id="s"><rect width="30" height="90"/></symbol><clipPath id="c"><use href="#s"/></clipPath><rect width="90" height="90" clip-path="url(#c)"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "clip by a link": Seen('<clipPath id="c"><a><rect width="30" height="90"/></a></clipPath><rect width="90" height="90" clip-path="url(#c)"/><circle cx="50" cy="95" r="3"/>'),  # noqa: E501
+    "clip of nothing": Seen('<clipPath id="c"><rect width="30" height="90"/></clipPath><g clip-path="url(#c)"/><circle cx="50" cy="70" r="20" clip-path="none" mask="none"/>'),  # noqa: E501
+    "clip of evenodd by evenodd": Seen('<clipPath id="c"><path clip-rule="evenodd" d="M0 0H100V100H0ZM45 0H55V100H45Z"/></clipPath><path clip-path="url(#c)" fill-rule="evenodd" d="M20 20H80V80H20ZM35 35H65V65H35Z"/>'),  # noqa: E501
+    "clip by two circles": Seen('<clipPath id="c"><circle cx="35" cy="50" r="25"/><circle cx="65" cy="50" r="25"/></clipPath><rect width="100" height="100" clip-path="url(#c)"/>'),  # noqa: E501
+    "mask red": Seen('<mask id="m"><rect width="50" height="100" fill="red"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>', "mask"),  # noqa: E501
+    "mask white without opacity": Seen('<mask id="m"><rect width="100" height="100" fill="white" opacity="0"/><rect width="20" height="100" fill="#fff"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask black on white on black": Seen('<mask id="m"><rect width="100" height="100"/><circle cx="50" cy="50" r="30" fill="white"/><circle cx="50" cy="50" r="10" fill="black"/></mask><rect width="100" height="100" mask="url(#m)"/>'),  # noqa: E501
+    "mask white gradient": Seen('<linearGradient id="l"><stop stop-color="white"/><stop offset="1" stop-color="white"/></linearGradient><mask id="m"><rect width="50" height="100" fill="url(#l)"/></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>'),  # noqa: E501
+    "mask with text": Seen('<mask id="m"><rect width="50" height="100" fill="white"/><text y="90" font-size="80">A</text></mask><circle cx="50" cy="50" r="40" mask="url(#m)"/>', "text"),  # noqa: E501
+    "symbol with a place": Seen('<symbol id="s" x="10" y="20" width="30" height="30"><circle cx="15" cy="15" r="15"/></symbol><use href="#s" x="5"/>'),  # noqa: E501
+    "use with spaces": Seen('<rect id="g" width="20" height="20"/><use href=" #g " x="50"/>'),
+    "use of hidden things": Seen('<g visibility="hidden"><rect id="g" width="20" height="20"/></g><use href="#g" x="50"/>'),  # noqa: E501
+    "use both references": Seen('<defs><rect id="g" width="20" height="20"/><rect id="h" width="40" height="40"/></defs><use href="#g" xlink:href="#h" x="50"/>'),  # noqa: E501
+    "use percent": Seen('<defs><rect id="g" width="20%" height="20%"/></defs><svg width="50" height="50"><use href="#g" x="50%" y="50%"/></svg>'),  # noqa: E501
+    "points in any form": Seen('<polygon points="10,10,40,10,40,40"/><polyline points=" 60 10 , 90 10&#10;90,40 "/><polygon points="10-60"/>'),  # noqa: E501
+    "path many of one command": Seen('<path d="M10 10H30 50 40V30 50h5 5v5 5C60 60 70 60 70 70 60 80 50 80 40 70L10 90z"/>'),  # noqa: E501
+    "path relative moves": Seen('<path d="m10 10 20 0 0 20z m40 0 20 0 0 20z m0 40h20v20z"/>'),
+    "path relative arcs and curves": Seen('<path d="m50 10a20 20 0 0 1 20 20 20 20 0 0 1-20 20s-10 0-20-10-5-5-5-5q-5-5 0-10t10-5z"/>'),  # noqa: E501
+    "path signs": Seen('<path d="M+10+10L+9e1-0L90 9.0e+1L10,+90z"/>'),
+    "path of one point": Seen('<path d="M10 10z"/><path d="M10 10L10 10"/><path d="M50 50"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
+    "path T chain after a curve": Seen('<path d="M10 50C20 10 30 10 40 50T70 50 90 50V90H10Z"/>'),
+    "path capital Z twice": Seen('<path d="M20 20H80V80ZZ M10 90H20V80Z z"/>'),
+    "tiny view box": Seen('<circle cx="0.0005" cy="0.0005" r="0.0004"/>', root='viewBox="0 0 .001 .001"'),
+    "huge view box": Seen('<circle cx="500000" cy="500000" r="400000"/>', root='viewBox="0 0 1e6 1e6"'),
+    "switch of text": Seen('<switch><text y="50">A</text><rect width="30" height="30"/></switch>', "text"),
+    "switch languages": Seen('<switch><rect systemLanguage="" width="90" height="90"/><circle systemLanguage="fr, en-US" cx="50" cy="70" r="20"/></switch>'),  # noqa: E501
+    "text alone": Seen('<text y="50" font-size="50">A</text>', "text"),
+    "vector effect": Seen('<rect width="30" height="30" vector-effect="non-scaling-stroke"/>'),
+    "opacity of almost nothing": Seen('<rect width="90" height="90" opacity="0.0001"/><circle cx="50" cy="70" r="20" opacity="0.999"/>'),  # noqa: E501
+    "colours covered": Seen('<rect x="20" y="20" width="40" height="40" fill="red"/><rect width="90" height="90" fill="green"/>'),  # noqa: E501
+    "white covered": Seen('<circle cx="50" cy="50" r="20" fill="white"/><rect width="90" height="90"/>'),
+    "white letter on a disc on white": Seen('<rect width="100" height="100" fill="#ffffff"/><circle cx="50" cy="50" r="40" fill="#0000cc"/><path fill="white" d="M40 30H60V70H40Z"/>'),  # noqa: E501
+    "white stroke on black": Seen('<rect width="90" height="90"/><path d="M10 10H80" stroke="white"/>', "strokes"),
+    "off-white": Seen('<rect width="100" height="100" fill="#fefefe"/><circle cx="50" cy="50" r="40"/>', "colours"),
+    "two greys": Seen('<rect width="50" height="100" fill="#333"/><rect x="50" width="50" height="100" fill="#999"/>'),
+    "doctype html entities": Seen(f'<!DOCTYPE svg [<!ENTITY box "0 0 100 100"><!ENTITY p "<path d=\'{SQUARE}\'/>">]><svg {HEAD} viewBox="&box;">&p;</svg>'),  # noqa: E501
+    "mirrored twice": Seen('<g transform="scale(-1,1) translate(-100)"><path d="M10 10H60V60H10Z"/></g><path d="M40 40H90V90H40Z"/><path transform="matrix(0 1 1 0 0 0)" d="M30 5H50V95H30Z"/>'),  # noqa: E501
 }  # fmt: skip
 
 INK = {
@@ -403,25 +464,22 @@ INK = {
     "css id": 0.283, "css child and sibling": 0.090, "css nth-child": 0.090, "css attribute": 0.126, "css not": 0.180,
     "css is and where": 0.090, "css important": 0.031, "css specificity": 0.360, "css order": 0.360,
     "css beats attribute": 0.360, "style beats css": 0.360, "css comments": 0.360, "css cdata": 0.196,
-    "css media screen": 0.031, "css media attribute": 0.360, "css media dark": 0.360, "css import": 0.360,
-    "css variable": 0.031, "css invalid value": 0.360, "css hover": 0.360, "css geometry": 0.303, "css path": 0.360,
-    "css path none": 0.360, "css type other": 0.360, "css universal": 0.126, "css two sheets": 0.360, "css case": 0.031,
-    "css unknown selector": 0.360, "css animation": 0.360, "fill inherit": 0.040, "fill current colour": 0.071,
-    "fill transparent": 0.071, "fill rgba 0": 0.071, "fill #0000": 0.071, "fill hsl": 0.071,
-    "fill bogus inherits": 0.071, "fill opacity 0": 0.071, "fill opacity inherited": 0.071, "opacity 0": 0.071,
-    "fill initial": 0.250, "fill unset": 0.071, "gradient": 0.282, "gradient without stops": 0.071,
+    "css media screen": 0.031, "css media attribute": 0.360, "css media dark": 0.360, "css variable": 0.031,
+    "css invalid value": 0.360, "css hover": 0.360, "css geometry": 0.303, "css path": 0.360, "css path none": 0.360,
+    "css type other": 0.360, "css universal": 0.126, "css two sheets": 0.360, "css case": 0.031, "fill inherit": 0.040,
+    "fill current colour": 0.071, "fill transparent": 0.071, "fill rgba 0": 0.071, "fill #0000": 0.071,
+    "fill hsl": 0.071, "fill bogus inherits": 0.071, "fill opacity 0": 0.071, "fill opacity inherited": 0.071,
+    "opacity 0": 0.071, "fill initial": 0.250, "fill unset": 0.071, "gradient": 0.282, "gradient without stops": 0.071,
     "gradient by reference": 0.282, "paint that is not there": 0.071, "colours beside each other": 0.720,
-    "colours upon each other": 0.810, "white on black": 0.527, "white behind black": 0.283,
-    "white and black again": 0.559, "white alone": 0.283, "display none": 0.071, "display none stays": 0.071,
-    "visibility back in a child": 0.071, "visibility collapse": 0.071, "no size": 0.031, "metadata": 0.071,
-    "another namespace": 0.071, "unknown element": 0.071, "text": 0.073, "text hidden": 0.071, "text empty": 0.071,
-    "image": 0.071, "foreign object": 0.071, "filter that is not there": 0.283, "marker": 0.088,
-    "stroke of no fill": 0.006, "stroke without width": 0.360, "stroke transparent": 0.360, "animation": 0.071,
-    "svg font": 0.000, "use": 0.240, "use of a later one": 0.240, "use inherits": 0.120,
-    "use of a group with its own fill": 0.120, "use nested": 0.040, "use in a loop": 0.040, "use of nothing": 0.071,
-    "use of another file": 0.071, "use css": 0.120, "symbol": 0.125, "symbol without size": 0.784,
-    "symbol with size": 0.070, "symbol cuts": 0.062, "symbol does not cut": 0.125, "symbol alone": 0.071,
-    "symbol slice": 0.125, "nested svg": 0.250, "nested svg cuts": 0.126, "nested svg does not cut": 0.125,
+    "white on black": 0.527, "white behind black": 0.283, "white and black again": 0.559, "white alone": 0.283,
+    "display none": 0.071, "display none stays": 0.071, "visibility back in a child": 0.071,
+    "visibility collapse": 0.071, "no size": 0.031, "metadata": 0.071, "another namespace": 0.071,
+    "unknown element": 0.071, "text hidden": 0.071, "text empty": 0.071, "filter that is not there": 0.283,
+    "stroke without width": 0.360, "stroke transparent": 0.360, "use": 0.240, "use of a later one": 0.240,
+    "use inherits": 0.120, "use of a group with its own fill": 0.120, "use nested": 0.040, "use in a loop": 0.040,
+    "use of nothing": 0.071, "use css": 0.120, "symbol": 0.125, "symbol without size": 0.784, "symbol with size": 0.070,
+    "symbol cuts": 0.062, "symbol does not cut": 0.125, "symbol alone": 0.071, "symbol slice": 0.125,
+    "nested svg": 0.250, "nested svg cuts": 0.126, "nested svg does not cut": 0.125,
     "nested svg, percentages inside": 0.100, "nested svg of no size": 0.071, "nested svg, min": 0.160,
     "nested svg, none": 0.251, "nested svg, one side": 0.125, "switch": 0.071, "switch extension": 0.071,
     "language without a switch": 0.071, "link": 0.090, "clip": 0.251, "clip in style": 0.251, "clip of a group": 0.224,
@@ -435,48 +493,56 @@ INK = {
     "points without separators": 0.068, "arc flags": 0.125, "arc to itself": 0.360, "arc too small": 0.226,
     "arc without radius": 0.160, "arc negative radius": 0.251, "arc turned": 0.145, "path exponents": 0.320,
     "path compressed": 0.416, "path implicit lines": 0.330, "path after z": 0.190, "path smooth": 0.323,
-    "path error at the end": 0.360, "path error in the middle": 0.180, "path error at the beginning": 0.031,
-    "path error in a flag": 0.000, "path odd numbers": 0.180, "path none": 0.071, "path two moves": 0.180,
-    "path relative curves": 0.216, "transform list": 0.120, "transform skew": 0.082, "transform about a point": 0.060,
-    "transform odd spaces": 0.075, "transform bad": 0.090, "transform css": 0.198,
-    "transform css over attribute": 0.090, "transform css none": 0.090, "transform css without unit": 0.090,
-    "transform origin": 0.060, "transform origin centre": 0.060, "transform origin of its box": 0.060,
-    "transform origin attribute": 0.060, "mirrored": 0.460, "flat": 0.071, "prefix": 0.360, "entities": 0.360,
-    "document type": 0.360, "style sheet in another file": 0.360, "nested groups": 0.360, "css of types": 0.215,
-    "css attribute equals": 0.125, "css two classes": 0.090, "css root": 0.031, "css general sibling": 0.215,
-    "css empty and only": 0.215, "css has": 0.090, "css namespace": 0.125, "css at the end": 0.196,
-    "css important in style": 0.090, "css important attribute": 0.125, "css spaces": 0.125,
-    "css comment in style": 0.125, "css html comment": 0.125, "css string with a brace": 0.125,
+    "path none": 0.071, "path two moves": 0.180, "path relative curves": 0.216, "transform list": 0.120,
+    "transform skew": 0.082, "transform about a point": 0.060, "transform odd spaces": 0.075, "transform css": 0.198,
+    "transform css over attribute": 0.090, "transform css none": 0.090, "transform origin": 0.060,
+    "transform origin centre": 0.060, "transform origin of its box": 0.060, "transform origin attribute": 0.060,
+    "mirrored": 0.460, "flat": 0.071, "prefix": 0.360, "entities": 0.360, "document type": 0.360,
+    "nested groups": 0.360, "css of types": 0.215, "css attribute equals": 0.125, "css two classes": 0.090,
+    "css root": 0.031, "css general sibling": 0.215, "css empty and only": 0.215, "css has": 0.090,
+    "css namespace": 0.125, "css at the end": 0.196, "css important in style": 0.090, "css important attribute": 0.125,
+    "css spaces": 0.125, "css comment in style": 0.125, "css html comment": 0.125, "css string with a brace": 0.125,
     "css pseudo-element": 0.215, "css opacity": 0.125, "css clip": 0.251, "css visibility": 0.125,
     "css current colour": 0.125, "css inherit": 0.125, "css even-odd": 0.270, "css transform": 0.090,
     "css transform matrix": 0.090, "css all": 0.125, "fill short hex": 0.125, "fill upper case": 0.125,
     "fill rgb out of range": 0.250, "fill of wide gamuts": 0.125, "fill named colour": 0.125,
     "fill opacity negative": 0.125, "opacity in groups": 0.125, "opacities multiplied": 0.125,
     "display upper case": 0.125, "display on what is referred to": 0.120, "display none on a clone's target": 0.125,
-    "display none in a clip": 0.098, "defs everywhere": 0.125, "text in defs": 0.125, "text span": 0.003,
-    "text without fill": 0.125, "image without a picture": 0.125, "filter missing": 0.125, "blend": 0.125,
-    "marker in a style": 0.082, "use with units": 0.120, "use of a link and a switch": 0.080,
-    "use of a nested svg": 0.156, "use of a symbol of a symbol": 0.160, "use of a symbol with percentages": 0.080,
-    "use transformed and moved": 0.040, "use of a clip": 0.251, "use clipped": 0.251, "use css inheritance": 0.120,
-    "two of one id": 0.205, "symbol, max and mid": 0.125, "symbol with an offset box": 0.125,
-    "symbol transformed": 0.125, "nested svg transformed": 0.125, "nested svg in a nested svg": 0.080,
-    "nested svg, overflow in style": 0.125, "nested svg, slice": 0.306, "switch in a switch": 0.071,
-    "switch of nothing": 0.071, "switch with a group hidden": 0.071, "required features": 0.090,
-    "clip of a nested svg": 0.251, "clip with percentages": 0.125, "clip by box of a group": 0.040,
-    "clip by box, transformed": 0.294, "clip with a group in it": 0.036, "clip transformed child": 0.080,
-    "clip of even-odd": 0.135, "clip by something else": 0.502, "clips twice": 0.125, "clip and mask": 0.125,
-    "mask by use": 0.283, "mask in units": 0.160, "mask clipped": 0.251, "mask of a mask": 0.251,
-    "mask transformed element": 0.080, "mask that is not there": 0.502, "lengths, odd ones": 0.088,
-    "length with a space before its unit": 0.125, "rect auto": 0.125, "line and polyline": 0.320,
-    "polygon of one point": 0.125, "path with references": 0.360, "path z and on": 0.135,
-    "path comma after a command": 0.360, "path two commas": 0.360, "path number with a point at its end": 0.000,
-    "path unknown command": 0.360, "path leading text": 0.125, "path huge": 0.180, "path arcs in a row": 0.093,
-    "path arc, a hair": 0.251, "path T after M": 0.453, "path S after Q": 0.434, "bow tie": 0.320,
-    "bow tie, even-odd": 0.320, "rings that touch": 0.480, "even-odd, four deep, mixed directions": 0.560,
-    "nonzero, same way, three deep": 1.000, "counters in two shapes": 0.600, "a hole filled by another shape": 0.520,
-    "transform none": 0.180, "transform with units": 0.090, "transform upper case": 0.090, "transform trailing": 0.090,
-    "transform matrix short": 0.090, "transform scale and skew": 0.251, "transform percent": 0.060,
-    "transform percent of its box": 0.060, "transform origin keywords": 0.015, "transform origin one value": 0.015,
-    "processing instruction": 0.360, "xml space": 0.090, "inkscape": 0.360, "illustrator": 0.270, "sketch": 0.360,
+    "display none in a clip": 0.098, "defs everywhere": 0.125, "text in defs": 0.125, "text without fill": 0.125,
+    "image without a picture": 0.125, "filter missing": 0.125, "use with units": 0.120,
+    "use of a link and a switch": 0.080, "use of a nested svg": 0.156, "use of a symbol of a symbol": 0.160,
+    "use of a symbol with percentages": 0.080, "use transformed and moved": 0.040, "use of a clip": 0.251,
+    "use clipped": 0.251, "use css inheritance": 0.120, "two of one id": 0.205, "symbol, max and mid": 0.125,
+    "symbol with an offset box": 0.125, "symbol transformed": 0.125, "nested svg transformed": 0.125,
+    "nested svg in a nested svg": 0.080, "nested svg, overflow in style": 0.125, "nested svg, slice": 0.306,
+    "switch in a switch": 0.071, "switch of nothing": 0.071, "switch with a group hidden": 0.071,
+    "required features": 0.090, "clip of a nested svg": 0.251, "clip with percentages": 0.125,
+    "clip by box of a group": 0.040, "clip by box, transformed": 0.294, "clip with a group in it": 0.036,
+    "clip transformed child": 0.080, "clip of even-odd": 0.135, "clip by something else": 0.502, "clips twice": 0.125,
+    "clip and mask": 0.125, "mask by use": 0.283, "mask in units": 0.160, "mask clipped": 0.251,
+    "mask of a mask": 0.251, "mask transformed element": 0.080, "mask that is not there": 0.502,
+    "lengths, odd ones": 0.088, "length with a space before its unit": 0.125, "rect auto": 0.125,
+    "line and polyline": 0.320, "polygon of one point": 0.125, "path with references": 0.360, "path z and on": 0.135,
+    "path arcs in a row": 0.093, "path arc, a hair": 0.251, "path T after M": 0.453, "path S after Q": 0.434,
+    "bow tie": 0.320, "bow tie, even-odd": 0.320, "rings that touch": 0.480,
+    "even-odd, four deep, mixed directions": 0.560, "nonzero, same way, three deep": 1.000,
+    "counters in two shapes": 0.600, "a hole filled by another shape": 0.520, "transform none": 0.180,
+    "transform scale and skew": 0.251, "transform percent": 0.060, "transform percent of its box": 0.060,
+    "transform origin keywords": 0.015, "transform origin one value": 0.015, "processing instruction": 0.360,
+    "xml space": 0.090, "inkscape": 0.360, "illustrator": 0.270, "sketch": 0.360, "css escapes": 0.125,
+    "css case of elements": 0.090, "css any namespace": 0.125, "css nth-last-child": 0.090, "css classes apart": 0.125,
+    "css wide words": 0.125, "css descendant of the root": 0.090, "css variable in a variable": 0.125,
+    "css shorthand of nothing": 0.125, "css colours of zero opacity": 0.125, "css display block": 0.215,
+    "stroke none in a style": 0.090, "stroke current colour": 0.090, "stroke of a paint that is not there": 0.090,
+    "clip of a line": 0.125, "clip with a rule around it": 0.270, "clip by a symbol": 0.125, "clip by a link": 0.003,
+    "clip of nothing": 0.125, "clip of evenodd by evenodd": 0.240, "clip by two circles": 0.336,
+    "mask white without opacity": 0.036, "mask black on white on black": 0.251, "mask white gradient": 0.251,
+    "symbol with a place": 0.070, "use with spaces": 0.080, "use of hidden things": 0.040, "use both references": 0.040,
+    "use percent": 0.010, "points in any form": 0.090, "path many of one command": 0.262, "path relative moves": 0.060,
+    "path relative arcs and curves": 0.132, "path signs": 0.680, "path of one point": 0.125,
+    "path T chain after a curve": 0.380, "path capital Z twice": 0.185, "switch languages": 0.125,
+    "vector effect": 0.090, "opacity of almost nothing": 0.125, "colours covered": 0.810, "white covered": 0.810,
+    "white letter on a disc on white": 0.422, "two greys": 1.000, "doctype html entities": 0.360,
+    "mirrored twice": 0.480,
 }  # fmt: skip
 """The share of the view that is ink in Chromium's picture, of drawings that are drawn as it shows them."""

@@ -158,5 +158,7 @@ def test_a_plain_drawing_needs_no_extra(tmp_path: Path, monkeypatch: pytest.Monk
         monkeypatch.setitem(sys.modules, module, None)
     plain = f'<g style="fill:#123"><path fill-rule="evenodd" d="{SQUARE}M40 40H60V60H40Z"/><circle r="9"/></g>'
     assert len(read(tmp_path, f"<svg {HEAD} viewBox='0 0 100 100'>{plain}</svg>").contours) == 3
-    with pytest.raises(FontError, match=r"styles.*drawings needs cssselect2: pip install 'glyphspline\[drawings\]'"):
+    with pytest.raises(
+        FontError, match=r"style sheets, clips or strokes needs cssselect2: pip install 'glyphspline\[drawings\]'"
+    ):
         read(tmp_path, f"<svg {HEAD} viewBox='0 0 100 100'><style>.a{{fill:none}}</style>{plain}</svg>")

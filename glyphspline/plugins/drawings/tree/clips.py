@@ -54,6 +54,8 @@ class Cutting:
             target = self._of.resource(reference(text))
             if reference(text) is None or (target is None and not (reference(text) or "").startswith("#")):
                 self._of.unread.add(f"{name}: {text[:40]}", self._of.line_of(element))
+            elif target is not None and element is self._of.document.root:
+                self._of.unread.add(f"the {name} of the whole drawing", self._of.line_of(element))
             elif target is not None and target.tag == ("clipPath" if name == "clip-path" else "mask"):
                 if target in self._active:
                     self._of.unread.add(f"a {target.tag} within itself", self._of.line_of(target))
