@@ -393,6 +393,9 @@ SEEN = {
     "material": Seen('<path d="M0 0h24v24H0z" fill="none"/><path d="M12 2C6.48 2 2 6.48 2 12s4.48 10 10 10 10-4.48 10-10S17.52 2 12 2zm-2 15l-5-5 1.41-1.41L10 14.17l7.59-7.59L19 8l-9 9z"/>', root='height="24" width="24" viewBox="0 0 24 24"'),  # noqa: E501
     "sketch": Seen('<g stroke="none" stroke-width="1" fill="none" fill-rule="evenodd"><g transform="translate(-10, -10)" fill="#000000" fill-rule="nonzero"><polygon points="30 30 90 30 90 90 30 90"/></g></g>'),  # noqa: E501
     # And others
+    "even-odd, a thin overlap": Seen('<path fill-rule="evenodd" d="M10 0H90V43H10ZM20 40H80V100H20Z"/>'),
+    "even-odd, a thin loop": Seen('<path fill-rule="evenodd" d="M10 10H90V90H10V40H95V43H5V37H50V10Z"/>'),
+    "opposite, a thin overlap": Seen('<path d="M10 0H90V43H10ZM20 40V100H80V40Z"/><rect x="45" width="10" height="90"/>'),  # noqa: E501
     "css escapes": Seen('<style>.a\\:b{fill:none} #\\31 x{fill:none}</style><rect class="a:b" width="30" height="30"/><rect id="1x" x="40" width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
     "css case of elements": Seen('<style>RECT{fill:none} circle{FILL:None}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501
     "css any namespace": Seen('<style>*|rect{fill:none}</style><rect width="30" height="30"/><circle cx="50" cy="70" r="20"/>'),  # noqa: E501

@@ -6,7 +6,7 @@ where contours of one shape cross so that no direction serves, they are united.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
 from typing import TYPE_CHECKING
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 CHORDS = 24
 """Chords a curve, for telling inside from outside."""
 
-LINES = 9
-"""Scan lines through each contour."""
+LINES = (24, 9, 3)
+"""Scan lines through each contour; the fewer where there are very many contours."""
 
-MOST_CROSSINGS = 4_000_000
+MOST_CROSSINGS = 2_000_000
 """Crossings of scan lines that are looked at."""
 
 NARROW = 5e-4
@@ -156,9 +156,11 @@ def crossings(chains: list[Chain]) -> tuple[IntArray, IntArray, IntArray, IntArr
     start = np.concatenate(outlines)
     stop = np.concatenate([np.roll(points, -1, axis=0) for points in outlines])
     of = np.repeat(np.arange(len(outlines)), [len(points) for points in outlines])
-    shares = (np.arange(LINES) + 0.5 + 0.1 * np.sin(np.arange(LINES))) / LINES
-    at = np.unique([points[:, 1].min() + shares * np.ptp(points[:, 1]) for points in outlines])
-    first, last = np.searchsorted(at, np.sort([start[:, 1], stop[:, 1]], axis=0))
+    ends = np.sort([start[:, 1], stop[:, 1]], axis=0)
+    for at in scan_lines(chains, outlines):
+        first, last = np.searchsorted(at, ends)
+        if (last - first).sum() <= MOST_CROSSINGS:
+            break
     if not 0 < (last - first).sum() <= MOST_CROSSINGS:
         return None
     side = np.repeat(np.arange(len(start)), last - first)
@@ -173,6 +175,17 @@ def crossings(chains: list[Chain]) -> tuple[IntArray, IntArray, IntArray, IntArr
     near &= line[1:] == line[:-1]
     tell = ~(np.append(near, False) | np.insert(near, 0, False))
     return of[side], way, after - way, after, tell
+
+
+def scan_lines(chains: Sequence[Chain], outlines: Sequence[FloatArray]) -> Iterator[FloatArray]:
+    """Heights of scan lines through all contours, ascending: many, also between points, then fewer and fewer."""
+    levels = np.unique(np.concatenate([np.array(chain.points)[:, 1] for chain in chains]))
+    between = (levels[1:] + levels[:-1]) / 2
+    for count in LINES:
+        shares = (np.arange(count) + 0.5 + 0.1 * np.sin(np.arange(count))) / count
+        lines = [points[:, 1].min() + shares * np.ptp(points[:, 1]) for points in outlines]
+        yield np.unique(np.concatenate([*lines, between]))
+        between = between[:0]
 
 
 def _area(chain: Chain) -> float:
