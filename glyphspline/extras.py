@@ -13,6 +13,7 @@ EXTRAS = {
     "fonts": ("writing an otf", "cffsubr"),
     "text": ("text on lines", "unicode_segmentation_rs"),
     "cad": ("DXF", "ezdxf"),
+    "drawings": ("a drawing with style sheets, clips or strokes", "cssselect2", "tinycss2", "pathops"),
     "parquet": ("Parquet", "pyarrow"),
     "sources": ("reading Glyphs files", "glyphsLib"),
     "cluster": ("--jobs tcp://…", "distributed"),

@@ -22,6 +22,7 @@ COMMANDS = {
     "text": ["text", FONT, "O", "--width", "900", "--format", "svg"],
     "overlaps": ["convert", FONT, "--text", "O", "--remove-overlaps"],
     "parquet": ["convert", FONT, "--text", "O", "--format", "svg,parquet"],
+    "drawings": ["convert", "styled.svg", "--all"],
     "cad": ["convert", FONT, "--text", "O", "--format", "dxf"],
     "sources": ["convert", "made.glyphs", "--text", "O"],
     "cluster": ["convert", FONT, "--text", "O", "--jobs", "tcp://127.0.0.1:1"],
@@ -57,6 +58,9 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def found(place: Path) -> Any:
     """The exit status and standard error of each command, where no extra is installed and nothing is compiled."""
     (place / "made.glyphs").write_text('{\n.appVersion = "3208";\n}\n')
+    (place / "styled.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg"><style>.a{fill:none}</style><path d="M0 0H9V9Z"/></svg>'
+    )
     commands = {
         extra: [*words, *([] if extra == "view" else ["--out", f"out-{extra}"])] for extra, words in COMMANDS.items()
     }

@@ -148,6 +148,7 @@ class Outline:
         notes: one sentence for each part that the reader left out.
         snapped: how far, at most, the contours are from what the font draws, in font units: a reader drops segments
             that are shorter than a thousandth of a unit, and closes gaps of that size.
+        unread: one phrase for each thing that shows in the source and is not in the contours, such as strokes or text.
     """
 
     name: str
@@ -158,6 +159,7 @@ class Outline:
     metrics: FontMetrics = field(default_factory=FontMetrics)
     notes: tuple[str, ...] = ()
     snapped: float = 0.0
+    unread: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         if not isinstance(self.contours, Contours):

@@ -32,7 +32,8 @@ class Reader(NamedTuple):
 
     Attributes:
         recognises: whether a path is one, by it and the first bytes of a file (of a folder none).
-        opened: from a path and a location to the source. has_axes: whether a source may have a location.
+        opened: from a path and a location to the source. has_axes: whether a source may have a location, in a design
+            space or by name.
         own: the format in which ``refit`` writes such a source again.
     """
 

@@ -91,7 +91,7 @@ class Source(ABC):
             return cls(path, *location)  # type: ignore[call-arg]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self).opened, (self.path, dict(self.location)) if self.axes else (self.path,)
+        return type(self).opened, (self.path, dict(self.location)) if self.location else (self.path,)
 
     @cached_property
     def sha256(self) -> str:

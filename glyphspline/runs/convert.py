@@ -75,8 +75,10 @@ class ConvertJob(Output, Job[Task, list[Done]]):
 
     def failed(self, task: Task, error: Exception) -> list[Done]:
         """The line of a glyph that could not be converted."""
-        entry: dict[str, Any]
-        entry = {"advance": None, "status": "failed", "files": {}, "deviation": None, "contours": (), "notes": ()}
+        entry: dict[str, Any] = {
+            "advance": None, "status": "failed", "files": {}, "deviation": None, "contours": (), "notes": (),
+            "unread": (),
+        }  # fmt: skip
         return [done(task, {**entry, "error": reason(error)})]
 
     def failures(self, result: list[Done]) -> int:

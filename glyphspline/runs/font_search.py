@@ -44,7 +44,7 @@ def _found(item: str) -> Iterator[Path]:
     elif path.is_dir():
         fonts = [file for file in path.rglob("*") if file.suffix.lower() in SUFFIXES and file.is_file()]
         fonts += [folder for folder in path.rglob("*.ufo") if is_ufo(folder)]
-        yield from fonts or ([path] if next(path.glob("*.svg"), None) else [])
+        yield from fonts or ([path] if next(path.glob("*.svg*"), None) else [])
     elif path.exists():
         yield path
     else:

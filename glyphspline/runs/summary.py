@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from ..readers.pens import NO_AREA
 from ..types import counted, listed, rounded_up, shortened
 
 SHOWN = 10
@@ -34,8 +33,8 @@ class Summary:
         statuses: glyphs by status. not_converged, outside_tolerance, new_crossings, collapsed, source_kept: glyphs with
             such a contour; or that are outside the tolerance in a file of the whole font.
         contours, splines: that were fitted, and those of them that are one closed spline without a corner.
-        named: the first few glyphs of the last four, by what it is. left_out: (glyph, notes), the first few that came
-            out empty because of what was left out.
+        named: the first few glyphs of the last four, by what it is.
+        unread: glyphs whose source shows more than was read. parts: (glyph, what it is), the first few.
         worst: largest deviations, (font units, glyph). failures: (glyph, error), the first few.
         slowest: (seconds, glyph). done: number of glyphs converted in this run, not in an earlier one.
         remarks: on formats with one file a font.
@@ -52,7 +51,8 @@ class Summary:
     contours: int = 0
     splines: int = 0
     named: dict[str, list[str]] = field(default_factory=dict)
-    left_out: list[tuple[str, str]] = field(default_factory=list)
+    unread: int = 0
+    parts: list[tuple[str, str]] = field(default_factory=list)
     worst: list[tuple[float, str]] = field(default_factory=list)
     slowest: list[tuple[float, str]] = field(default_factory=list)
     failures: list[tuple[str, str]] = field(default_factory=list)
@@ -83,9 +83,9 @@ class Summary:
                 setattr(self, name, getattr(self, name) + 1)
                 named = self.named.setdefault(name, [])
                 named += [glyph] if len(named) < NAMED else []
-        notes = [note for note in entry.get("notes") or () if status == "empty" and NO_AREA not in note]
-        if notes and len(self.left_out) < NAMED:
-            self.left_out.append((glyph, ", ".join(notes)))
+        if entry.get("unread"):
+            self.unread += 1
+            self.parts += [(glyph, "; ".join(entry["unread"]))] if len(self.parts) < NAMED else []
         if entry.get("deviation") is not None:
             keep_largest(self.worst, (entry["deviation"], glyph))
 
@@ -123,8 +123,9 @@ class Summary:
                 yield f"{words}: {listed(self.named[name], count)}"
         if self.not_converged:
             yield f"{counted(self.not_converged, 'glyph')} with a contour that did not converge"
-        for glyph, notes in self.left_out:
-            yield f"{glyph} came out empty: {notes}"
+        yield from (f"not read of {glyph}: {what}" for glyph, what in self.parts)
+        if self.unread > len(self.parts):
+            yield f"{counted(self.unread - len(self.parts), 'glyph')} more not read in full, in the manifest"
         yield from self.remarks
         # Seconds from which the slowest glyphs are listed.
         if self.slowest and self.slowest[0][0] > 5.0:
@@ -136,8 +137,9 @@ class Summary:
 
     @property
     def undone(self) -> bool:
-        """Whether something asked for was not done: a glyph is missing, failed, or is not within the tolerance."""
-        return bool(self.missing or self.failed or (self.aim and self.outside_tolerance))
+        """Whether something asked for was not done: a glyph is missing, failed, not read whole, or not within the
+        tolerance."""
+        return bool(self.missing or self.failed or self.unread or (self.aim and self.outside_tolerance))
 
     @property
     def failed(self) -> int:

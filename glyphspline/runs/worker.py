@@ -77,7 +77,8 @@ def convert_and_write(job: Output, tasks: Sequence[Task], outlines: Sequence[Out
         deviations = [value for contour in glyph.measures or () if (value := contour["deviation"]) is not None]
         notes = tuple(dict.fromkeys([*result.outline.notes, *result.notes]))
         facts = {
-            "deviation": max(deviations, default=None), "contours": glyph.measures, "notes": notes, "error": None
+            "deviation": max(deviations, default=None), "contours": glyph.measures, "notes": notes,
+            "unread": result.outline.unread, "error": None,
         }  # fmt: skip
         finished.append(write_files(job, task, glyph, facts)._replace(rows=waiting))
         waiting = b""

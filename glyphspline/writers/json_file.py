@@ -58,6 +58,7 @@ def head(glyph: GlyphResult, settings: Settings) -> dict[str, Any]:
         "descender": outline.metrics.descender * scale,
         "advance": outline.advance * scale,
         "notes": list(dict.fromkeys([*outline.notes, *glyph.notes])),
+        "unread": list(outline.unread),
     }
 
 

@@ -36,7 +36,9 @@ from tests.drawings import L_SHAPE, METRICS, circle, polygon_contour
 from tests.places import FONTS
 
 SPEC = RunSpec(Options(step=80))
-MANIFEST_KEYS = ["glyph", "gid", "unicodes", "advance", "status", "files", "deviation", "contours", "notes", "error"]
+MANIFEST_KEYS = [
+    "glyph", "gid", "unicodes", "advance", "status", "files", "deviation", "contours", "notes", "unread", "error",
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")

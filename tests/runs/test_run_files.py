@@ -164,9 +164,10 @@ def test_a_drawing_that_came_out_empty_says_why(tmp_path: Path) -> None:
     for _ in range(2):  # the second time from the manifest
         summary = convert_font(source, source.glyph_names, tmp_path / "out", SPEC, jobs=0)
         lines = "\n".join(summary.lines())
-        assert "stroked came out empty: 1 shapes without fill (strokes are not read) left out" in lines
-        assert "written came out empty: 1 text left out" in lines
+        assert "not read of stroked: strokes, which --location strokes draws (line 1)" in lines
+        assert "not read of written: text (line 1)" in lines
         assert "blank" not in lines
+        assert summary.undone
 
 
 HOLD = """

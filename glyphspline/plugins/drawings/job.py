@@ -16,7 +16,8 @@ from ...runs.schedule import workers
 from ...runs.spec import kinds_for
 from ...types import counted, shortened
 from .rewrite import Rewritten, rewritten
-from .svg import LARGEST_FILE
+from .svg import drawings_in
+from .tree.document import LARGEST_FILE
 
 if TYPE_CHECKING:
     from ...cli.arguments import RunOptions
@@ -71,7 +72,7 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
         raise OptionError(
             "drawings have the fewest segments with --continuity g2 and --corners sharp; convert draws others"
         )
-    targets = targets_of([file for path in paths for file in files_in(path)], out)
+    targets = targets_of([file for path in paths for file in drawings_in(path)], out)
     files = [*targets]
     found: dict[Path, Rewritten | str] = {}
     jobs = None if how.scheduler else how.processes
@@ -94,11 +95,6 @@ def refit_drawings(paths: Sequence[Path], options: Options, out: Path | None, ho
     for line in () if how.quiet or how.as_json else lines(found):
         say(line)
     return any(isinstance(one, str) or one.unread for one in found.values())
-
-
-def files_in(path: Path) -> list[Path]:
-    """The drawings of a folder, or one alone."""
-    return sorted(path.glob("*.svg")) if path.is_dir() else [path]
 
 
 def targets_of(files: Sequence[Path], out: Path | None) -> dict[Path, Path]:

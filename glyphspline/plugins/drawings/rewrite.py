@@ -8,8 +8,8 @@ unknown size: paths of clips, masks and the like.
 
 from __future__ import annotations
 
+import gzip
 import re
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -23,10 +23,14 @@ from ...errors import GlyphsplineError
 from ...fitting.options import Options
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...readers.pens import ContourPen
-from ...readers.source import parsed, reason
 from ...runs.spec import LIMITS
 from ...types import FloatArray
-from .svg import FLIP, draw_path, metrics_of, shapes, view_box
+from .svg import FLIP, draw_chain, metrics_of, view_of
+from .tree.document import GZIP, Document, parse, unpacked
+from .tree.lengths import Lengths, view_box
+from .tree.painted import Place, placed
+from .tree.path_data import parsed_path
+from .tree.structure import Structure
 
 AT_NODES = re.compile(r"marker|stroke-dash")
 """What of a style is drawn at the nodes of a path, or from its first one on."""
@@ -72,36 +76,41 @@ def rewritten(data: bytes, options: Options) -> Rewritten:
     Raises:
         GlyphsplineError: not an SVG drawing, or in an encoding unlike ASCII.
     """
-    root = parsed(data)
-    if root.tag.rpartition("}")[2] != "svg":
-        raise GlyphsplineError("not an SVG drawing")
-    places = dict(zip(root.iter(), places_of(data), strict=True))
+    packed, data = data.startswith(GZIP), unpacked(data)
+    document = parse(data)
+    places = dict(zip(document.root.iter(), places_of(data), strict=True))
     edits, unread, paths, before, after = list[tuple[int, int, str]](), list[str](), 0, 0, 0
-    for path in paths_of(root):
+    for path in paths_of(document):
         paths += 1
         try:
             old, outline = outline_of(path)
-        except Exception as error:  # broken data raises anything
-            unread.append(error.message if isinstance(error, GlyphsplineError) else reason(error))
+        except GlyphsplineError as error:
+            unread.append(error.message)
             continue
         new = None if outline is None else shortest(outline, old, path, options)
         before, after = before + old, after + (new[0] if new else old)
         if new:
             edits.append((*places[path.element], new[1]))
     ends = [(0, 0, ""), *sorted(edits), (len(data), len(data), "")]
-    parts = [data[a[1] : b[0]] + b[2].encode() for a, b in pairwise(ends)]
-    return Rewritten(b"".join(parts), paths, len(edits), (before, after), tuple(unread))
+    new_data = b"".join([data[a[1] : b[0]] + b[2].encode() for a, b in pairwise(ends)])
+    new_data = gzip.compress(new_data, mtime=0) if packed else new_data
+    return Rewritten(new_data, paths, len(edits), (before, after), tuple(unread))
 
 
-def paths_of(root: Any) -> Iterator[Path]:
-    """The paths that are drawn, and those of symbols with a view box, which is their em."""
-    em, nothing = metrics_of(root)[0].units_per_em, Counter[str]()
-    symbols = [element for element in root.iter() if element.tag.rpartition("}")[2] == "symbol"]
-    drawn = [(root, em, 0), *((child, box[3], 1) for one in symbols if (box := view_box(one)) for child in one)]
-    for element, own_em, depth in drawn:
-        for shape, matrix, _ in shapes(element, np.eye(3), True, nothing, depth):
-            if shape.tag.rpartition("}")[2] == "path" and shape.get("d"):
-                yield Path(shape, matrix, own_em)
+def paths_of(document: Document) -> Iterator[Path]:
+    """The paths that are drawn, clones left out, and those of symbols with a view box, which is their em."""
+    root = document.root
+    structure, em = Structure(document, view_of(root)), metrics_of(root)[0].units_per_em
+    lengths = Lengths(*view_of(root)[2:])
+    drawn = [(structure.draw(root, Place(np.eye(3), None, lengths, mode="own")), em)]
+    for symbol in root.iter("symbol"):
+        if box := view_box(symbol.get("viewBox")):
+            place = Place(np.eye(3), structure.style_of(symbol), Lengths(box[2], box[3]), mode="own")
+            drawn.append(([shape for child in symbol for shape in structure.draw(child, place)], box[3]))
+    for shapes, own_em in drawn:
+        for shape in shapes:
+            if shape.element.tag == "path" and shape.element.get("d"):
+                yield Path(shape.element, shape.matrix, own_em)
 
 
 def outline_of(path: Path) -> tuple[int, Outline | None]:
@@ -113,7 +122,12 @@ def outline_of(path: Path) -> tuple[int, Outline | None]:
     scale = float(np.linalg.norm(path.matrix[:2, :2], 2))
     em = path.em / scale if scale > 0 else 0.0
     pen = ContourPen(coincident=1e-7 * em)
-    segments, left_open = draw_path(path.element.get("d"), FLIP, pen)
+    path_data, error_at = parsed_path(path.element.get("d"))
+    if error_at is not None:
+        raise GlyphsplineError(f"path data with an error at character {error_at + 1}")
+    for subpath in path_data:
+        draw_chain(placed(subpath.points, FLIP), subpath.degrees, subpath.closed, pen)
+    segments, left_open = sum(each.written for each in path_data), not all(each.closed for each in path_data)
     if error := LIMITS.error_of(segments):
         raise error
     styled = " ".join([*path.element.attrib, path.element.get("style", "")])
@@ -189,7 +203,10 @@ def places_of(data: bytes) -> Iterator[tuple[int, int]]:
     """
     starts, reader = list[int](), expat.ParserCreate()
     reader.StartElementHandler = lambda name, attributes: starts.append(reader.CurrentByteIndex)
-    reader.Parse(data, True)
+    try:
+        reader.Parse(data, True)
+    except (expat.ExpatError, LookupError, ValueError) as error:  # an encoding that this parser does not have
+        raise GlyphsplineError("text in an encoding unlike ASCII, which is not edited") from error
     for start in starts:
         tag = TAG.match(data, start)
         if tag is None or len(tag[0]) < 2:

@@ -56,7 +56,7 @@ class Drawings(NamedTuple):
 
     Attributes:
         contents: bytes, in the order of the formats. notes: what is left out of them, or worth knowing.
-        complete: whether no glyph is left out, and all contours are within the tolerance.
+        complete: whether no glyph is left out, all are read whole, and all contours are within the tolerance.
     """
 
     contents: list[bytes]
@@ -148,13 +148,14 @@ def drawings(job: TextJob) -> Drawings:
     """
     layout, options, fit_each = job.layout, job.options, partial(fitted, alone=job.alone)
     metrics = layout.fonts[0].metrics
-    notes: dict[str, None] = {}
+    notes, unread = dict[str, None](), dict[str, None]()
     outside = False
 
     def note(results: Sequence[GlyphResult]) -> None:
         nonlocal outside
         for result in results:
             notes.update(dict.fromkeys([*result.outline.notes, *result.notes]))
+            unread.update(dict.fromkeys(f"not read of {result.outline.name}: {part}" for part in result.outline.unread))
             outside |= False in result.arrays.measures.get("within_tolerance", ())
 
     @cache
@@ -190,7 +191,8 @@ def drawings(job: TextJob) -> Drawings:
             contents.append(made.encode() if isinstance(made, str) else made)
         sign_of_life()
     left_out = any(one.startswith(f"{LEFT_OUT}: ") or f": {LEFT_OUT}: " in one for one in notes)
-    return Drawings(contents, [one for one in notes if NO_AREA not in one], not (left_out or outside))
+    remarks = [*unread, *(one for one in notes if NO_AREA not in one)]
+    return Drawings(contents, remarks, not (left_out or outside or unread))
 
 
 def sized(job: TextJob, result: GlyphResult) -> Settings:

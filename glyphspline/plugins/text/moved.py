@@ -123,7 +123,10 @@ def _one(outlines: Sequence[Outline], motion: Motion) -> Outline:
     moved = moved_contours(arrays, np.arange(arrays.num_contours), motion.repeated(counts))
     name, notes = " ".join(outline.name for outline in outlines), [note for o in outlines for note in o.notes]
     snapped = max(outline.snapped for outline in outlines)
-    return Outline(name, contours=Contours(moved), metrics=outlines[0].metrics, notes=tuple(notes), snapped=snapped)
+    return Outline(
+        name, contours=Contours(moved), metrics=outlines[0].metrics, notes=tuple(notes), snapped=snapped,
+        unread=tuple(dict.fromkeys(part for outline in outlines for part in outline.unread)),
+    )  # fmt: skip
 
 
 def _boxes(parts: Parts) -> FloatArray:

@@ -211,7 +211,8 @@ class Layout:
         left, bottom, right, top = self.box
         metrics = FontMetrics(self.fonts[0].metrics.units_per_em, top, bottom)
         moved = Contours(moved_contours(contours, *_chosen(ends, parts)))
-        return Outline(NAME, advance=right - left, contours=moved, metrics=metrics)
+        unread = dict.fromkeys(f"glyph {one.name!r}: {part}" for one in parts.outlines for part in one.unread)
+        return Outline(NAME, advance=right - left, contours=moved, metrics=metrics, unread=tuple(unread))
 
 
 def _chosen(ends: IntArray, parts: Parts) -> tuple[IntArray, Motion]:

@@ -306,7 +306,7 @@ class BulkReader:
                 name, gid, unicodes = head
                 made = Outline.trusted(
                     name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=contours,
-                    metrics=metrics, notes=notes, snapped=moved,
+                    metrics=metrics, notes=notes, snapped=moved, unread=() if d > c else self._face.unread(gid),
                 )  # fmt: skip
                 found.append(made)
         return found

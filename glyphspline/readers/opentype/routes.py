@@ -20,6 +20,9 @@ from ...outlines.outline import FontMetrics, Outline
 from ...types import Head
 from ..pens import ContourPen, enter_component
 
+ELSEWHERE = ("SVG ", "COLR", "CBDT", "sbix", "EBDT")
+"""Tables that may hold the ink of a glyph without contours: drawings, layers and pictures."""
+
 MOST_MOVES = 4_000_000
 """Limit of points times variations of a glyph of ``glyf``: real ones have some 50,000, and fontTools lists them all."""
 
@@ -49,6 +52,25 @@ class Face:
         tags = self.face.table_tags
         self.has_records = "glyf" in tags and "loca" in tags and "VARC" not in tags
         self._failure: Exception | None = None
+
+    def unread(self, gid: int) -> tuple[str, ...]:
+        """Where the ink of a glyph without contours is, of which nothing is read; empty if it has none."""
+        font, face = self.font, self.face
+        found = {
+            "SVG ": lambda: face.has_color_svg and len(face.get_glyph_color_svg(gid).data),
+            "COLR": lambda: (
+                (face.has_color_layers and face.get_glyph_color_layers(gid))
+                or (face.has_color_paint and face.glyph_has_color_paint(gid))
+            ),
+            "CBDT": lambda: face.has_color_png and len(font.get_glyph_color_png(gid).data),
+        }
+        found["sbix"] = found["CBDT"]
+        tables = [tag for tag in self._elsewhere if tag in found and found[tag]()]
+        return tuple(f"its ink is in the {tag.strip()} table, which is not read" for tag in tables)
+
+    @cached_property
+    def _elsewhere(self) -> list[str]:
+        return [tag for tag in ELSEWHERE if tag in self.face.table_tags]
 
     @cached_property
     def _tables(self) -> TTFont:
@@ -83,7 +105,8 @@ class Face:
             glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
             pen.finish()
             advance = float(otRound(glyph.width))  # read last: drawing applies the variations of the width
-            return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped)
+            unread = () if pen.stacks else self.unread(head.gid)
+            return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped, unread)
         except Exception:
             self.__dict__.pop("_tables", None)
             self.__dict__.pop("_glyphs", None)

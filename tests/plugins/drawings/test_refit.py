@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import re
 from pathlib import Path
@@ -185,6 +186,20 @@ def test_calls_that_are_of_no_use_end_with_2(words: list[str], said: str, tmp_pa
 def test_utf_16_is_refused_or_read_as_it_is() -> None:
     with pytest.raises(gs.GlyphsplineError, match="encoding"):
         rewritten(drawing('<path d="M0 0"/>').encode("utf-16"), G2)
+
+
+def test_a_compressed_drawing_stays_compressed() -> None:
+    text = drawing(f'<path d="{letter()}"/>').encode()
+    found = rewritten(gzip.compress(text), G2)
+    assert gzip.decompress(found.data) == rewritten(text, G2).data
+    assert found.changed == 1
+
+
+@pytest.mark.parametrize("style", ["path{display:none}", "path{d:none}"])
+def test_styles_say_what_is_drawn(style: str) -> None:
+    text = drawing(f'<style>{style}</style><path d="{letter()}"/>').encode()
+    found = rewritten(text, G2)
+    assert (found.paths, found.data) == (0, text)
 
 
 def test_a_folder_of_drawings_becomes_a_font(tmp_path: Path) -> None:
