@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from .._version import __version__
-from ..errors import GlyphsplineError, OptionError
+from ..errors import GlyphsplineError, OptionError, require
 from ..fields import WRITTEN, About, option
 from .config import settings
 from .groups import natural, place
@@ -144,14 +144,20 @@ class Instance:
     location: str | None = option(
         None, "Set the place of a variable font: wght=700,wdth=80, or a name: Bold.", GLYPHS, "TAG=VALUE,…"
     )
+    strokes: bool = option(False, "Draw the strokes of SVG drawings too, as outlines.", GLYPHS)
 
     @property
     def place(self) -> dict[str, float] | str:
         """``wght=700,wdth=80`` as a dictionary; text without ``=`` is the name of an instance, and stays as it is.
 
+        Drawings with their strokes are the instance "strokes".
+
         Raises:
-            OptionError: a value is no number.
+            OptionError: a value is no number, or strokes have a location.
         """
+        if self.strokes:
+            require(self.location is None, "--strokes is for drawings, which have no --location", self.location)
+            return "strokes"
         if self.location and "=" not in self.location:
             return self.location
         return numbers_of(self.location, "--location is like wght=700,wdth=80")

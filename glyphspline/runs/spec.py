@@ -137,7 +137,7 @@ class RunSpec:
     maps: Maps = field(default_factory=Maps)
     verb: ClassVar[str] = "convert"
     unshown: ClassVar[tuple[str, ...]] = (
-        "continuity", "effort", "flatness", "measure", "stroke_width", "thousandths",
+        "continuity", "corner_angle", "effort", "flatness", "measure", "stroke_width", "thousandths",
     )  # fmt: skip
     needs_formats: ClassVar[bool] = True
 

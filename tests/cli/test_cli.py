@@ -382,11 +382,11 @@ def test_settings_come_from_files_and_the_command_line_wins(tmp_path: Path, monk
 
     monkeypatch.chdir(tmp_path)
     project = (
-        '[tool.glyphspline]\nout = "out"\nformat = ["svg"]\ntolerance = 4\ncorner-angle = 30\nremove-overlaps = true\n'
+        '[tool.glyphspline]\nout = "out"\nformat = ["svg"]\ntolerance = 4\nview-box = "ink"\nremove-overlaps = true\n'
     )
     (tmp_path / "pyproject.toml").write_text(project)
     run = converted()
-    assert (run["formats"], run["options"]["tolerance"], run["options"]["corner_angle"]) == (["svg"], 4.0, 30.0)
+    assert (run["formats"], run["options"]["tolerance"], run["view_box"]) == (["svg"], 4.0, "ink")
     assert run["options"]["remove_overlaps"] is True
     (tmp_path / "mine.toml").write_text('tolerance = 3.0\ncorners = "sharp"\nview_box = "ink"\n')
     run = converted("--config", "mine.toml", "--corners", "smooth")
@@ -420,7 +420,7 @@ def test_settings_that_are_none_are_refused(text: str | None, words: str, tmp_pa
         (["--tolerance", "-1"], "--tolerance is a positive distance, not -1.0"),
         (["--tolerance", "abc"], "'--tolerance': 'abc' is not a number"),
         (["--tolerance", "nan"], "--tolerance is a positive distance, not nan"),
-        (["--corner-angle", "0"], "--corner-angle is an angle in degrees, above 0 and up to 180, not 0.0"),
+        (["--strokes", "--location", "Bold"], "--strokes is for drawings"),
         (["--precision", "12"], "--precision is a whole number from 0 to 9, not 12"),
         (["--count", "2.5"], "'--count': '2.5' is not a whole number"),
         (["--jobs", "-1"], "-1' is not a whole number from 0 on"),

@@ -164,7 +164,7 @@ def test_a_drawing_that_came_out_empty_says_why(tmp_path: Path) -> None:
     for _ in range(2):  # the second time from the manifest
         summary = convert_font(source, source.glyph_names, tmp_path / "out", SPEC, jobs=0)
         lines = "\n".join(summary.lines())
-        assert "not read of stroked: strokes, which --location strokes draws (line 1)" in lines
+        assert "not read of stroked: strokes, which --strokes draws (line 1)" in lines
         assert "not read of written: text (line 1)" in lines
         assert "blank" not in lines
         assert summary.undone

@@ -32,7 +32,7 @@ FLIP = np.diag([1.0, -1.0, 1.0])
 
 
 STROKES = "strokes"
-"""The named instance of drawings that has their strokes too: ``--location strokes``."""
+"""The named instance of drawings that has their strokes too: ``--strokes``."""
 
 
 class SvgDrawings(Source):

@@ -115,7 +115,7 @@ def test_what_cannot_be_bounded_or_read_is_refused(document: str | bytes, messag
 def test_what_is_not_read_is_named_by_its_lines(tmp_path: Path) -> None:
     body = "\n".join(['<path stroke="red" d="M0 0H9V9Z"/>'] * 5 + ["<text>A</text>"])
     outline = read(tmp_path, f"<svg {HEAD} viewBox='0 0 9 9'>\n{body}</svg>")
-    assert outline.unread == ("strokes, which --location strokes draws (lines 2, 3, 4 and 2 more)", "text (line 7)")
+    assert outline.unread == ("strokes, which --strokes draws (lines 2, 3, 4 and 2 more)", "text (line 7)")
 
 
 @pytest.mark.parametrize(

@@ -283,7 +283,7 @@ class Structure:
         if colour is None:
             return None
         if not self.strokes:
-            self.unread.add("strokes, which --location strokes draws", line)
+            self.unread.add("strokes, which --strokes draws", line)
             return None
         if style["vector-effect"] == "non-scaling-stroke":
             self.unread.add("strokes that do not scale, drawn as if they did", line)
