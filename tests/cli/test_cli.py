@@ -439,7 +439,12 @@ def test_short_help_version_and_completion() -> None:
     said = runner.invoke(app, ["-h"]).stdout
     assert "--show-completion" in said
     said = " ".join(runner.invoke(app, ["convert", "-h"]).stdout.replace("│", " ").split())
-    for words in ("Which glyphs", "How close to the source", "corners (sharp), or draw one curve a", "the paper's terms"):
+    for words in (
+        "Which glyphs",
+        "How close to the source",
+        "corners (sharp), or draw one curve a",
+        "the paper's terms",
+    ):
         assert words in said
 
 

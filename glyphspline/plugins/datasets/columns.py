@@ -85,13 +85,14 @@ ABOUT: dict[str, str] = {
     **{name: measure.about for name, measure in QUANTITIES.items()},
     "max_curvature": "of the sharpest bend: 1/radius",
     "raster": "with `--raster`: grey picture of the outline, first row on top, 255 where ink covers a pixel",
+    "raster_side": "side of that square: an em, or more where the ink needs it",
     **{name: about for name, (_, about) in OF_FONTS.items()},
 }
 """What each column holds, in the order in which a table has them."""
 
 LENGTHS = (
     "advance", "em", "points", "source_points", "polygon", "knots", "control_points", "footpoints",
-    "spline_knots", "spline_points", "bezier_points", "ascender", "descender",
+    "spline_knots", "spline_points", "bezier_points", "ascender", "descender", "raster_side",
 )  # fmt: skip
 """Columns in the unit of length, beside the measures."""
 
@@ -118,6 +119,7 @@ def schema(spec: DatasetSpec, of_fonts: bool = False) -> Any:
     kinds = {name: type_of(kind) for name, (kind, _) in OF_GLYPHS.items()} | listed
     if spec.raster is not None:
         kinds["raster"] = pa.list_(pa.list_(pa.uint8(), spec.raster), spec.raster)
+        kinds["raster_side"] = pa.float32()
     if of_fonts:
         kinds |= {name: type_of(kind) for name, (kind, _) in OF_FONTS.items()}
     facts = {"schema": str(SCHEMA_VERSION), "rows": spec.rows, "unit": unit}

@@ -129,14 +129,20 @@ def _packs(fonts: Sequence[tuple[int, FontFacts]], size: int) -> list[tuple[Piec
 
 
 def plan_of(spec: DatasetSpec, found: Sequence[FontFacts], sizes: Sizes = USUAL) -> Plan:
-    """The plan for fonts that were scanned, in any order. Fonts of the same bytes are taken once."""
+    """The plan for fonts that were scanned, in any order.
+
+    Fonts of the same bytes are taken once. All faces of a file are in the split of its first one.
+    """
     fonts: list[FontFacts] = []
     by_key: dict[Any, FontFacts] = {}
     by_name: dict[tuple[str, str, str], FontFacts] = {}
+    by_file: dict[str, str] = {}
     for font in sorted(found, key=lambda f: (*f.key, f.file, str(f.path))):
         if font.sha256 is None or font.status == "failed":
             fonts.append(font)
             continue
+        if font.split:
+            font = replace(font, split=by_file.setdefault(font.file, font.split))
         first = by_key.setdefault(font.key, font)
         if first is not font:
             reason = "has the same bytes as another file"

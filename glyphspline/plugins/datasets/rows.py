@@ -83,7 +83,9 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
     of_glyph = _glyph_columns([glyph.outline for glyph in glyphs], scales)
     hashed = offsets if spec.rows == "glyph" else np.arange(len(found) + 1)
     if spec.raster is not None:
-        of_glyph["raster"] = rasters([glyph.outline for glyph in glyphs], found.source, offsets, spec.raster)
+        outlined = [glyph.outline for glyph in glyphs]
+        of_glyph["raster"], sides = rasters(outlined, found.source, offsets, spec.raster)
+        of_glyph["raster_side"] = pa.array(sides / scales, pa.float32())
     if spec.rows == "glyph":
         columns = {name: nested(column, offsets) for name, column in columns.items()}
     else:
@@ -181,15 +183,20 @@ def with_font(
     return pa.Table.from_arrays([*table.columns, *(columns[name] for name in OF_FONTS)], schema=layout)
 
 
-def rasters(outlines: Sequence[Outline], contours: ContourArrays, offsets: IntArray, size: int) -> Any:
+def rasters(
+    outlines: Sequence[Outline], contours: ContourArrays, offsets: IntArray, size: int
+) -> tuple[Any, FloatArray]:
     """Pictures of ``size`` by ``size`` pixels of glyphs, as an Arrow array of lists of rows, the first on top.
 
     Agg, which matplotlib brings along, weighs each pixel by the share of it that the outline covers, in 256 steps,
     under the non-zero rule. The picture is a square of one em: from left to right its middle is that of the advance,
-    from bottom to top that between descender and ascender. What is beyond is cut off.
+    from bottom to top that between descender and ascender. Where ink is beyond, it is the square about both.
 
     Args:
         contours: of all outlines; offsets: (G + 1,) where those of each begin.
+
+    Returns:
+        The pictures; (G,) their sides in font units.
     """
     from matplotlib.backends.backend_agg import RendererAgg
     from matplotlib.path import Path
@@ -200,19 +207,26 @@ def rasters(outlines: Sequence[Outline], contours: ContourArrays, offsets: IntAr
     context.set_linewidth(0.0)
     context.set_snap(False)
     pictures = np.zeros((len(outlines), size, size), dtype=np.uint8)
+    sides = np.array([outline.metrics.units_per_em for outline in outlines], dtype=np.float64)
     for g, outline in enumerate(outlines):
         own = contours.part(int(offsets[g]), int(offsets[g + 1]))
         if not own.num_contours:
             continue
         em, metrics = outline.metrics.units_per_em, outline.metrics
-        left, bottom = (outline.advance - em) / 2, (metrics.ascender + metrics.descender - em) / 2
+        path = Path(*_path(own))
+        low = np.array([outline.advance - em, metrics.ascender + metrics.descender - em]) / 2
+        ink = path.get_extents()
+        least, most = np.minimum(low, ink.min), np.maximum(low + em, ink.max)
+        if (least < low).any() or (most > low + em).any():
+            sides[g] = (most - least).max()
+            low = (least + most - sides[g]) / 2
         renderer.clear()
-        placed = Affine2D().translate(-left, -bottom).scale(size / em)
-        renderer.draw_path(context, Path(*_path(own)), placed, (0.0, 0.0, 0.0))
+        placed = Affine2D().translate(*-low).scale(size / sides[g])
+        renderer.draw_path(context, path, placed, (0.0, 0.0, 0.0))
         pictures[g] = np.asarray(renderer.buffer_rgba())[..., 3]
     pa = need("parquet")
     lines = pa.FixedSizeListArray.from_arrays(pa.array(pictures.ravel()), size)
-    return pa.FixedSizeListArray.from_arrays(lines, size)
+    return pa.FixedSizeListArray.from_arrays(lines, size), sides
 
 
 def _path(contours: ContourArrays) -> tuple[Any, Any]:

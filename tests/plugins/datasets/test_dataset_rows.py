@@ -388,6 +388,16 @@ def test_a_picture_covers_the_area_and_stands_upright() -> None:
     assert grey[-12].sum() > grey[10].sum(), "the foot of the L is below"
 
 
+def test_a_picture_holds_all_ink() -> None:
+    tall = polygon_contour(np.array([[0, -400], [300, -400], [300, 1000], [0, 1000.0]]))
+    (row,) = table_of([outline(tall)], None, DatasetSpec(options=None, raster=70, normalise="units")).to_pylist()
+    assert row["raster_side"] == 1400
+    grey = np.array(row["raster"]) / 255.0
+    assert grey.sum() * (1400 / 70) ** 2 == pytest.approx(300 * 1400, rel=1e-2)
+    (small,) = table_of([outline(polygon_contour(L_SHAPE))], None, DatasetSpec(options=None, raster=8)).to_pylist()
+    assert small["raster_side"] == 1
+
+
 def test_pictures_are_filled_by_the_non_zero_rule_and_antialiased() -> None:
     ring, hole = (gs.Contour.from_segments(circle(r, centre=(300, 300), turn=t)) for r, t in ((200, 1), (100, -1)))
     assert picture(ring, hole).sum() * 400 == pytest.approx(np.pi * (200**2 - 100**2), rel=0.01)
