@@ -110,11 +110,11 @@ def look_again(
             for axis in range(b.shape[1]):
                 for k in range(4):
                     c[axis, k] = b[k, axis]
-        start = sign * x
-        new, distance, whole = search_piece(c, 3, first - origin, last - origin, 0.0, start, squared, TIED, work)
+        start = sign * x - origin  # the span's own parameters begin at its knot
+        new, distance, whole = search_piece(c, 3, first - origin, last - origin, -origin, start, squared, TIED, work)
         certified = certified and whole
         if distance < squared or new != start:
-            x, squared, at, right = sign * new, distance, knot, s >= 0
+            x, squared, at, right = sign * (origin + new), distance, knot, s >= 0
     expand(P, p, h, i, at, right, b)
     origin = 0.0 if at == i else (h[i] if right else h[i - 1])
     return x, point_at(b, (x if right else -x) - origin, e), SEARCHED if certified else GIVEN_UP
