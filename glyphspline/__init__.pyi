@@ -7,6 +7,8 @@ from .errors import GlyphsplineError as GlyphsplineError
 from .errors import OptionError as OptionError
 from .errors import OutputError as OutputError
 from .errors import PolygonError as PolygonError
+from .experiments.api import Experiment as Experiment
+from .experiments.api import experiment as experiment
 from .fitting.convert import convert as convert
 from .fitting.convert import convert_many as convert_many
 from .fitting.options import Options as Options

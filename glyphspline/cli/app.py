@@ -25,6 +25,9 @@ OWN = {
     "convert": Listed(
         ".convert:convert", "Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index."
     ),
+    "experiment": Listed(
+        ".experiment:experiment", "Make the paper's figures and tables for any characters: variants side by side."
+    ),
     "info": Listed(
         ".info:info", "Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."
     ),

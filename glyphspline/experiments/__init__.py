@@ -1,0 +1,13 @@
+"""Experiments as the paper makes them, on any character: variants and peers through one polygon, figures and tables.
+
+In: outlines of a font, or clicked polygons; out: sheets, tables and a page. Read first: :mod:`.api`.
+"""
+
+from __future__ import annotations
+
+VARIANTS = tuple(f"variant {v}" for v in range(5))
+"""Names of the variants; see Table 1 of the paper."""
+
+PEERS = ("PIA", "splprep", "make_interp_spline", "centripetal")
+"""Progressive iterative approximation, whose limit is variant 3's; and SciPy's periodic cubics, by chord lengths or,
+the last one, their square roots."""
