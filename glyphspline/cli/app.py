@@ -25,16 +25,13 @@ OWN = {
     "convert": Listed(
         ".convert:convert", "Convert glyphs of fonts to SVG drawings and curvature maps, with a manifest and an index."
     ),
-    "experiment": Listed(
-        ".experiment:experiment", "Make the paper's figures and tables for any characters: variants side by side."
-    ),
     "info": Listed(
         ".info:info", "Show what a font file holds: faces, axes, units per em, numbers of glyphs and characters."
     ),
     "report": Listed(".report:report", "Write the gallery, index.html, of one run, or of a folder that holds several."),
     "demo": Listed(
         ".demo:demo",
-        "Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and Latin letters.",
+        "Make the paper's figures for 龍 and 好, convert a few glyphs, and say where to look; of a font, those of --text.",
     ),
     "warm": Listed(
         ".warm:warm", "Compile everything now, so that no other command has to: for checkouts and containers."

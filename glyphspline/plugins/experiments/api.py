@@ -10,12 +10,12 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from ..errors import OptionError, PolygonError, is_positive, require
-from ..files import write_whole
-from ..outlines.outline import Outline
-from ..types import FloatArray, counted
-from ..writers.figures.basics import saved
-from ..writers.settings import FigureKind
+from ...errors import OptionError, PolygonError, is_positive, require
+from ...files import write_whole
+from ...outlines.outline import Outline
+from ...types import FloatArray, counted
+from ...writers.figures.basics import saved
+from ...writers.settings import FigureKind
 from . import PEERS, VARIANTS
 from .measures import rows_of
 from .methods import Curve, curve_through

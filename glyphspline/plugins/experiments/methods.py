@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from ..curves.bspline import Spline
-from ..interpolation.api import interpolate
-from ..interpolation.method import Parametrisation
-from ..interpolation.polygon import vertex_parameters
-from ..interpolation.result import Interpolation
-from ..types import FloatArray
+from ...curves.bspline import Spline
+from ...interpolation.api import interpolate
+from ...interpolation.method import Parametrisation
+from ...interpolation.polygon import vertex_parameters
+from ...interpolation.result import Interpolation
+from ...types import FloatArray
 from . import VARIANTS
 
 MAX_ITERATIONS, CUT = 1000, 100

@@ -8,13 +8,13 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from ..files import write_whole
-from ..report.data import script
-from ..report.pages import page_of
-from ..runs.folder import entries_of
-from ..runs.spec import read_run
-from ..types import counted, shortened
-from ..writers.svg.document import text
+from ...files import write_whole
+from ...report.data import script
+from ...report.pages import page_of
+from ...runs.folder import entries_of
+from ...runs.spec import read_run
+from ...types import counted, shortened
+from ...writers.svg.document import text
 from .claims import verdicts
 from .measures import QUANTITIES
 from .report import Tally, rows_in, write_means, write_tables

@@ -9,16 +9,16 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .._version import __version__
-from ..errors import GlyphsplineError, OptionError
-from ..fields import METHOD, WRITTEN, Rule, option, positive, whole
-from ..files import reading
-from ..outlines.sampling import MOST_VERTICES
-from ..runs.spec import RunSpec, command, font_facts
-from ..writers.settings import FigureKind
+from ..._version import __version__
+from ...errors import GlyphsplineError, OptionError
+from ...fields import METHOD, WRITTEN, Rule, option, positive, whole
+from ...files import reading
+from ...outlines.sampling import MOST_VERTICES
+from ...runs.spec import RunSpec, command, font_facts
+from ...writers.settings import FigureKind
 
 if TYPE_CHECKING:
-    from ..readers import Source
+    from ...readers import Source
 
 SHEETS: tuple[FigureKind, ...] = ("png", "svg", "pdf")
 """Formats of a sheet."""
@@ -45,11 +45,11 @@ class ExperimentSpec(RunSpec):
     formats: tuple[str, ...] = option(SHEETS, "Draw sheets in these formats.", WRITTEN, "NAME,…", flags="--format")
     variants: str = option(
         "1,2,3", "Put these variants of the paper through the polygons: 1,2,3 or 0-4.", METHOD, "LIST",
-        rule=Rule("a list of 0 to 4, as 1,2,3 or 0-4", lambda text: LISTED.fullmatch(text) is not None and bool(variants_of(text))),
+        rule=Rule("a list of 0 to 4, as 1,2,3 or 0-4", lambda text: bool(LISTED.fullmatch(text) and variants_of(text))),
     )  # fmt: skip
     count: int | None = option(
         None,
-        "Sample so many vertices a contour. Without this, --step and --clicked, vertices are set as somebody clicks them.",
+        "Sample so many vertices a contour. Without this, --step and --clicked, they are set as somebody would click.",
         METHOD, "N", rule=whole(3, MOST_VERTICES),
     )  # fmt: skip
     step: float | None = option(
@@ -84,7 +84,7 @@ class ExperimentSpec(RunSpec):
         return self if self.clicked is None else replace(self, clicked=Path(self.clicked.name))
 
     def run_facts(self, source: Source, glyphs: Any) -> dict[str, Any]:
-        """The content of ``run.json``; see :func:`.runs.spec.describe`."""
+        """The content of ``run.json``; see :func:`...runs.spec.describe`."""
         asked, missing = dict(getattr(glyphs, "asked", {})) or {"glyphs": [*glyphs]}, getattr(glyphs, "missing", ())
         points = None
         if self.clicked is not None:

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from ..curves.curvature import Comb
-from ..types import FloatArray
-from ..writers.figures.basics import outline_patch, ring
+from ...curves.curvature import Comb
+from ...types import FloatArray
+from ...writers.figures.basics import outline_patch, ring
 from . import PEERS, VARIANTS
 
 INK = "#1f2933"

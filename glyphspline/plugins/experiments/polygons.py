@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import GlyphsplineError, PolygonError
-from ..files import reading
-from ..interpolation.polygon import clean_polygon
-from ..outlines.outline import Contour, Outline
-from ..outlines.sampling import sample
-from ..types import FloatArray, IntArray
+from ...errors import GlyphsplineError, PolygonError
+from ...files import reading
+from ...interpolation.polygon import clean_polygon
+from ...outlines.outline import Contour, Outline
+from ...outlines.sampling import sample
+from ...types import FloatArray, IntArray
 
 COLUMNS = ["glyph", "contour", "x", "y"]
 """Of a file of clicked points: a character or the name of a glyph, a number of the contour, font units, y up."""

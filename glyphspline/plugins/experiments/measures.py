@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from ..curves.bezier import cross, derivative_points, evaluate
-from ..curves.integrals import NODES, WEIGHTS
-from ..fitting.measures import geometry
-from ..fitting.results import PER_EM, Quantity
-from ..outlines.contour_arrays import cubic_contours
-from ..report.data import plain
-from ..types import FloatArray
+from ...curves.bezier import cross, derivative_points, evaluate
+from ...curves.integrals import NODES, WEIGHTS
+from ...fitting.measures import geometry
+from ...fitting.results import PER_EM, Quantity
+from ...outlines.contour_arrays import cubic_contours
+from ...report.data import plain
+from ...types import FloatArray
 from .methods import Curve
 
 PER_PIECE = 16

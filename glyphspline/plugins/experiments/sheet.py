@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..curves.curvature import Comb, comb, shared_scale
-from ..types import counted
-from ..writers.figures.basics import ascii_text, blank
-from ..writers.svg.comb import SPACING
+from ...curves.curvature import Comb, comb, shared_scale
+from ...types import counted
+from ...writers.figures.basics import ascii_text, blank
+from ...writers.svg.comb import SPACING
 from . import VARIANTS
 from .measures import farthest_apart, is_tame
 from .style import (

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from ..files import replacing, write_whole
-from ..report.data import encoded, plain
-from ..runs.folder import entries_of
-from ..runs.spec import read_run
-from ..types import FloatArray
-from ..writers.figures.basics import blank, saved
+from ...files import replacing, write_whole
+from ...report.data import encoded, plain
+from ...runs.folder import entries_of
+from ...runs.spec import read_run
+from ...types import FloatArray
+from ...writers.figures.basics import blank, saved
 from .measures import QUANTITIES
 from .style import line_of, small, styled
 

@@ -13,16 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import GlyphsplineError
-from ..files import remove_partials, write_whole
-from ..outlines.outline import Outline
-from ..readers import Source
-from ..runs.convert import tasks_of
-from ..runs.engine import Item, Job, Observer, reason
-from ..runs.folder import Done, Output, Task, done, progress_of
-from ..runs.schedule import Place, place_of, sources
-from ..runs.spec import write_run
-from ..types import FloatArray
+from ...errors import GlyphsplineError
+from ...files import remove_partials, write_whole
+from ...outlines.outline import Outline
+from ...readers import Source
+from ...runs.convert import tasks_of
+from ...runs.engine import Item, Job, Observer, reason
+from ...runs.folder import Done, Output, Task, done, progress_of
+from ...runs.schedule import Place, place_of, sources
+from ...runs.spec import write_run
+from ...types import FloatArray
 from .polygons import read_clicked
 from .spec import ExperimentSpec, variants_of
 
@@ -48,7 +48,7 @@ class ExperimentJob(Output, Job[Task, list[Done]]):
 
     def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
         """Outlines; one that is too large is an error."""
-        from ..runs.worker import items
+        from ...runs.worker import items
 
         warm_up()
         (source,) = sources(self.place)
@@ -133,7 +133,7 @@ def experiment_face(
         executor: of the workers; it is not closed. restart: do it all anew. observer: called after each chunk.
 
     Raises:
-        OutputError: as :func:`.runs.convert.convert_font`.
+        OutputError: as :func:`...runs.convert.convert_font`.
         GlyphsplineError: the file of clicked points cannot be read.
     """
     facts, clicked = spec.run_facts(source, glyphs), None
