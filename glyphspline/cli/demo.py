@@ -29,7 +29,7 @@ def demo(
     ] = None,
     out: opt.Out = Path("outputs/demo"),
 ) -> bool:
-    """Make the paper's figures for 龍 and 好, convert a few glyphs, and say where to look; of a font, those of --text.
+    """Make the paper's figures for 龍 and 好, convert letters and say where to look; of a font, those of --text.
 
     Points of 龍 and 好 are clicked ones. The package's notebooks are copied to notebooks/.
     """

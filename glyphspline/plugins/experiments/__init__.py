@@ -1,6 +1,6 @@
 """Experiments as the paper makes them, on any character: variants and peers through one polygon, figures and tables.
 
-Needs no other plug-in. In: outlines of fonts, or clicked points; out: sheets, tables and a page. Read first: :mod:`.api`.
+Needs no other plug-in. In: outlines, or clicked points; out: sheets, tables and a page. Read first: :mod:`.api`.
 """
 
 from __future__ import annotations

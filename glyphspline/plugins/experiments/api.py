@@ -55,11 +55,15 @@ class Experiment:
         """A row of measures for each contour and method; lengths are in 1/1000 em, curvature is in 1/em."""
         return rows_of(self.polygons, self.curves, self.em)
 
-    def figure(self) -> Any:
-        """The sheet, a figure of matplotlib: original, polygon, curves, zooms, curvature maps and residuals."""
+    def figure(self, face: str = "") -> Any:
+        """The sheet, a figure of matplotlib: original, polygon, curves, zooms, curvature maps and residuals.
+
+        Args:
+            face: the font's name, for the caption.
+        """
         from .sheet import sheet
 
-        return sheet(self)
+        return sheet(self, face)
 
     def save(self, path: str | Path, face: str = "") -> None:
         """Write the sheet as PNG, SVG or PDF, by the suffix; the same bytes each time.
@@ -77,11 +81,10 @@ class Experiment:
 
     def drawn(self, kinds: Sequence[FigureKind], face: str = "") -> dict[FigureKind, bytes]:
         """The sheet in formats of ``SHEETS``."""
-        from .sheet import sheet
         from .style import small, styled
 
         with styled():
-            figure = sheet(self, face)
+            figure = self.figure(face)
             files = {kind: saved(figure, kind) for kind in kinds}
         return {kind: small(data) if kind == "png" else data for kind, data in files.items()}
 

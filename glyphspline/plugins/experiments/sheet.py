@@ -110,7 +110,7 @@ def _sheet(made: Experiment, face: str) -> Any:
     for k, method in enumerate(drawn):
         _column(made, method, (above[k], zooms[k]), (box, close))
         for teeth in combs[method]:
-            draw_comb(maps[k], teeth, COLOURS[method], scale, em)
+            draw_comb(maps[k], teeth, COLOURS[method], TOOTH * em / scale, CUT_AT * TOOTH * em)
         bare(maps[k])
         _within(maps[k], box, CUT_AT * TOOTH * em)
         letter(above[k], f"{next(names)} {method}{'' if _is_converged(made, method) else ', not converged'}")

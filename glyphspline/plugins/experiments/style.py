@@ -68,13 +68,12 @@ def fill(axes: Any, curves: Iterable[FloatArray], shade: str, edge: str, width: 
     axes.autoscale_view()
 
 
-def draw_comb(axes: Any, teeth: Comb, colour: str, scale: float, em: float) -> None:
-    """A curvature map with all teeth, on the convex side, and the curve. Those beyond ``CUT_AT`` scales are cut."""
+def draw_comb(axes: Any, teeth: Comb, colour: str, length: float, longest: float) -> None:
+    """A curvature map: all teeth, of ``length`` |κ| on the convex side and cut at ``longest``, and the curve."""
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path as Line
 
-    lengths = TOOTH * em * np.clip(teeth.curvature / scale, -CUT_AT, CUT_AT)
-    tips = teeth.points - lengths[:, None] * teeth.normals
+    tips = teeth.points - np.clip(length * teeth.curvature, -longest, longest)[:, None] * teeth.normals
     strokes = np.stack([teeth.points, tips], axis=1).reshape(-1, 2)
     path = Line(strokes, np.tile([Line.MOVETO, Line.LINETO], len(tips)))
     axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, linewidth=0.3, alpha=0.6))
