@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -35,6 +36,7 @@ def experiment(
     curvature maps on one scale, and the error at each step. Tables have a row for each contour and method; several
     fonts come into the same tables. Without glyphs asked for it takes those of --clicked, or all.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of workers: systems are small, and threads wait for each other
     with workplace(run, spec) as executor:  # first: workers start while fonts are opened
         from ...runs.font_search import find_fonts
 

@@ -45,7 +45,7 @@ EDGE, GAP, LABEL, LINE = 0.12, 0.14, 0.27, 0.155
 LOWEST, HIGHEST = 0.5, 1.45
 """Bounds of the height of a panel over its width; the glyph decides between them."""
 
-LEAST_ZOOM, MOST_ZOOM, TIMES = 0.03, 0.1, 5.0
+LEAST_ZOOM, MOST_ZOOM, TIMES = 0.05, 0.1, 8.0
 """Half of the side of what is zoomed, in em: at least, at most, and in distances of the curves there."""
 
 TINT = "#eef1f4"
@@ -211,11 +211,12 @@ def _caption(made: Experiment, methods: Sequence[str], face: str, scale: float, 
     codes = " ".join(f"U+{code:04X}" for code in outline.unicodes[:2])
     vertices = counted(sum(map(len, made.polygons)), "vertex").replace("vertexs", "vertices")
     last = letters[len(methods)]
+    between = ("", "", " and (d)")[len(methods)] if len(methods) < 3 else f" to ({letters[len(methods) - 1]})"
     reach = scale * made.em
     parts = [
         f"{ascii_text(outline.name[:60])}{f' ({codes})' if codes else ''}{f' of {ascii_text(face)}' if face else ''}.",
         f"(a) Original. (b) Polygon: {vertices}, {counted(len(made.polygons), 'contour')}.",
-        f"(c){f' to ({letters[len(methods) - 1]})' if len(methods) > 1 else ''} Curves through it; below, the dotted",
+        f"(c){between} Curves through it; below, the dotted",
         "part, where they lie farthest apart, with the polygon dashed, and curvature maps on one scale:",
         f"teeth are {TOOTH:g} em long at {reach:.3g}/em, and cut at {CUT_AT * reach:.3g}/em.",
         f"({last}) Largest distance of a vertex from its footpoint against the step, in 1/1000 em, and the tolerance.",

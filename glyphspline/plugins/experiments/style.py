@@ -1,4 +1,4 @@
-"""How figures look: one typeface, and colours that print in grey, from dark to light by the variant's number."""
+"""How figures look: one typeface, and colours that print in grey, each of its own lightness."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from . import PEERS, VARIANTS
 
 INK = "#1f2933"
 GREY = "#9aa5b1"
-SHADES = "#7a1f12", "#2a5caa", "#12876f", "#d98e04", "#9d7cc1"
+SHADES = "#7a1f12", "#2a5caa", "#239478", "#e3a11a", "#9d7cc1"
 COLOURS = dict(zip(VARIANTS, SHADES, strict=True))
 MARKERS = dict(zip(VARIANTS, "xos^D", strict=True))
 DASHES: dict[str, Any] = dict(zip(PEERS, ("-", (0, (5, 1.5)), (0, (3, 1.5)), (0, (1, 1))), strict=True))
