@@ -26,6 +26,10 @@ TOLERANCE = 1e-7
 """Of the residual, in em."""
 
 
+DPI = 160.0
+"""Of sheets as PNG."""
+
+
 @dataclass(frozen=True, eq=False)
 class Experiment:
     """Curves of several methods through the polygons of one outline.
@@ -85,7 +89,7 @@ class Experiment:
 
         with styled():
             figure = self.figure(face)
-            files = {kind: saved(figure, kind) for kind in kinds}
+            files = {kind: saved(figure, kind, DPI) for kind in kinds}
         return {kind: small(data) if kind == "png" else data for kind, data in files.items()}
 
     def _repr_png_(self) -> bytes:

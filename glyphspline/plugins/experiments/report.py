@@ -18,6 +18,7 @@ from ...runs.folder import entries_of
 from ...runs.spec import read_run
 from ...types import FloatArray
 from ...writers.figures.basics import blank, saved
+from .api import DPI
 from .measures import QUANTITIES
 from .style import line_of, small, styled
 
@@ -130,7 +131,7 @@ def write_means(out: Path, tally: Tally, formats: Sequence[Any]) -> list[str]:
     with styled():
         figure = means_figure(tally)
         for kind in formats:
-            data = saved(figure, kind)
+            data = saved(figure, kind, DPI)
             write_whole(str(out / f"means.{kind}"), small(data) if kind == "png" else data)
     return [f"means.{kind}" for kind in formats]
 

@@ -64,8 +64,7 @@ def draw_closed(axes: Any, points: FloatArray, **how: Any) -> None:
 def fill(axes: Any, curves: Iterable[FloatArray], shade: str, edge: str, width: float = 0.8) -> None:
     """Closed curves, each of cubics (m, 4, 2), as one filled path, holes left out."""
     for patch in outline_patch(curves, facecolor=shade, edgecolor=edge, linewidth=width):
-        axes.add_patch(patch)
-    axes.autoscale_view()
+        axes.add_artist(patch)  # not "add_patch", which looks for the limits of what is drawn: those are set
 
 
 def draw_comb(axes: Any, teeth: Comb, colour: str, length: float, longest: float) -> None:
@@ -76,7 +75,7 @@ def draw_comb(axes: Any, teeth: Comb, colour: str, length: float, longest: float
     tips = teeth.points - np.clip(length * teeth.curvature, -longest, longest)[:, None] * teeth.normals
     strokes = np.stack([teeth.points, tips], axis=1).reshape(-1, 2)
     path = Line(strokes, np.tile([Line.MOVETO, Line.LINETO], len(tips)))
-    axes.add_patch(PathPatch(path, facecolor="none", edgecolor=colour, linewidth=0.3, alpha=0.6))
+    axes.add_artist(PathPatch(path, facecolor="none", edgecolor=colour, linewidth=0.3, alpha=0.6))
     draw_closed(axes, tips, color=colour, lw=0.5)
     draw_closed(axes, teeth.points, color=INK, lw=0.8)
 
@@ -116,5 +115,5 @@ def small(png: bytes) -> bytes:
     file = BytesIO()
     with Image.open(BytesIO(png)) as drawn:
         few = drawn.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-    few.save(file, format="png", optimize=True)
+    few.save(file, format="png")
     return file.getvalue()
