@@ -59,12 +59,16 @@ class Rows:
     width: float
     height: float
 
-    def add(self, columns: int, ratio: float, below: float = GAP, inset: float = 0.0) -> list[Any]:
-        """A row of axes of a height over width, ``inset`` for ticks to the left and below, and space under it."""
+    def add(self, columns: int, used: int, ratio: float, below: float = GAP, inset: float = 0.0) -> list[Any]:
+        """A row of axes of a height over width in the middle ones of some columns.
+
+        Args:
+            below: space under it. inset: for ticks, to the left and below.
+        """
         each = (self.width - 2 * EDGE - (columns - 1) * GAP) / columns
         high, whole = each * ratio, self.figure.get_size_inches()
         self.height -= high
-        lefts = [EDGE + k * (each + GAP) for k in range(columns)]
+        lefts = [EDGE + (k + (columns - used) / 2) * (each + GAP) for k in range(used)]
         size = np.array([each - inset, high - 0.7 * inset]) / whole
         made = [
             self.figure.add_axes((*(np.array([left + inset, self.height + 0.7 * inset]) / whole), *size))
@@ -95,7 +99,7 @@ def _sheet(made: Experiment, face: str) -> Any:
     height += (each * 0.8 + GAP) * has_radii
     figure = blank(width, height)
     rows, names = Rows(figure, width, height - EDGE), map("({})".format, "abcdefghij")
-    original, polygon, residuals = rows.add(3, min(ratio, 1.1), LABEL)
+    original, polygon, residuals = rows.add(3, 3, min(ratio, 1.1), LABEL)
     fill(original, [contour.cubics() for contour in made.outline.contours], INK, INK)
     for p in made.polygons:
         draw_closed(polygon, p, color=INK, lw=0.6, marker="o", ms=1.5)
@@ -104,9 +108,8 @@ def _sheet(made: Experiment, face: str) -> Any:
         _within(axes, box)
         letter(axes, f"{next(names)} {words}")
     close = _zoom_of(made, drawn)
-    above, zooms, maps = rows.add(columns, ratio, LABEL), rows.add(columns, 0.75), rows.add(columns, ratio)
-    for axes in (*above[len(drawn) :], *zooms[len(drawn) :], *maps[len(drawn) :]):
-        axes.axis("off")
+    shapes = (ratio, LABEL), (0.75, GAP), (ratio, GAP)
+    above, zooms, maps = (rows.add(columns, len(drawn), own, below) for own, below in shapes)
     for k, method in enumerate(drawn):
         _column(made, method, (above[k], zooms[k]), (box, close))
         for teeth in combs[method]:
@@ -116,7 +119,7 @@ def _sheet(made: Experiment, face: str) -> Any:
         letter(above[k], f"{next(names)} {method}{'' if _is_converged(made, method) else ', not converged'}")
     _residuals(residuals, f"{next(names)} largest error, step by step", made, drawn)
     if has_radii:
-        for axes, method in zip(rows.add(columns, 0.8, inset=0.3), drawn, strict=False):
+        for axes, method in zip(rows.add(columns, len(drawn), 0.8, inset=0.3), drawn, strict=True):
             _radii(axes, made, method)
     figure.text(
         EDGE / width, (EDGE + LINE * len(caption)) / height, "\n".join(caption), fontsize=7.5, va="top",
