@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -13,12 +12,12 @@ from numpy.typing import ArrayLike
 from ...errors import OptionError, PolygonError, is_positive, require
 from ...files import write_whole
 from ...outlines.outline import Outline
-from ...types import FloatArray, counted
+from ...types import counted
 from ...writers.figures.basics import saved
 from ...writers.settings import FigureKind
 from . import PEERS, VARIANTS
 from .measures import rows_of
-from .methods import Curve, curve_through
+from .methods import Interpolated, curve_through
 from .polygons import polygons_of
 from .spec import SHEETS
 
@@ -30,29 +29,18 @@ DPI = 160.0
 """Of sheets as PNG."""
 
 
-@dataclass(frozen=True, eq=False)
-class Experiment:
-    """Curves of several methods through the polygons of one outline.
+class Experiment(Interpolated):
+    """Curves of several methods through the polygons of one outline, with what there is to see and to measure of them.
 
     Attributes:
         outline: what the polygons are of. polygons: (n, 2) of each contour, in font units.
         curves: of each contour by method, "variant 2" or a peer. tolerance: of the residual, in font units.
     """
 
-    outline: Outline
-    polygons: tuple[FloatArray, ...]
-    curves: tuple[Mapping[str, Curve], ...]
-    tolerance: float
-
     def __repr__(self) -> str:
         methods = ", ".join(self.curves[0]) if self.curves else "nothing"
         contours = counted(len(self.polygons), "contour")
         return f"<Experiment {self.outline.name!r}: {contours}, {sum(map(len, self.polygons))} vertices; {methods}>"
-
-    @property
-    def em(self) -> float:
-        """Font units of an em."""
-        return self.outline.metrics.units_per_em
 
     @cached_property
     def rows(self) -> list[dict[str, Any]]:

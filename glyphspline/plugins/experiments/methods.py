@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,7 @@ from ...interpolation.api import interpolate
 from ...interpolation.method import Parametrisation
 from ...interpolation.polygon import vertex_parameters
 from ...interpolation.result import Interpolation
+from ...outlines.outline import Outline
 from ...types import FloatArray
 from . import VARIANTS
 
@@ -50,6 +52,21 @@ class Curve:
             return None
         with np.errstate(all="ignore"):
             return float((self.residuals[-1] / self.residuals[-1 - steps]) ** (1 / steps))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Interpolated:
+    """The fields of :class:`.api.Experiment`."""
+
+    outline: Outline
+    polygons: tuple[FloatArray, ...]
+    curves: tuple[Mapping[str, Curve], ...]
+    tolerance: float
+
+    @property
+    def em(self) -> float:
+        """Font units of an em."""
+        return self.outline.metrics.units_per_em
 
 
 def curve_through(polygon: FloatArray, method: str, tolerance: float, radii: bool = False) -> Curve:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ...writers.figures.basics import ascii_text, blank
 from ...writers.svg.comb import SPACING
 from . import VARIANTS
 from .measures import farthest_apart, is_tame
+from .methods import Interpolated
 from .style import (
     COLOURS,
     CUT_AT,
@@ -32,9 +33,6 @@ from .style import (
     styled,
     zoomed,
 )  # fmt: skip
-
-if TYPE_CHECKING:
-    from .api import Experiment
 
 NARROW, WIDE = 7.2, 9.6
 """Inches of a sheet of three variants at most, and of more."""
@@ -78,13 +76,13 @@ class Rows:
         return made
 
 
-def sheet(made: Experiment, face: str = "") -> Any:
+def sheet(made: Interpolated, face: str = "") -> Any:
     """The figure of one character; ``face``: the name of its font, for the caption."""
     with styled():
         return _sheet(made, face)
 
 
-def _sheet(made: Experiment, face: str) -> Any:
+def _sheet(made: Interpolated, face: str) -> Any:
     drawn = [m for m in VARIANTS if made.curves and m in made.curves[0]]
     columns, width = max(3, len(drawn)), NARROW if len(drawn) <= 3 else WIDE
     em, box = made.em, _box_of(made)
@@ -128,7 +126,7 @@ def _sheet(made: Experiment, face: str) -> Any:
     return figure
 
 
-def _column(made: Experiment, method: str, axes: Sequence[Any], boxes: Sequence[Box]) -> None:
+def _column(made: Interpolated, method: str, axes: Sequence[Any], boxes: Sequence[Box]) -> None:
     """One variant: its curves, and what is zoomed of them."""
     above, below = axes
     pieces = [own[method].pieces for own in made.curves if is_tame(own[method].pieces, made.em)]
@@ -142,13 +140,13 @@ def _column(made: Experiment, method: str, axes: Sequence[Any], boxes: Sequence[
     zoomed(below, boxes[1])
 
 
-def _combs(made: Experiment, methods: Sequence[str]) -> dict[str, list[Comb]]:
+def _combs(made: Interpolated, methods: Sequence[str]) -> dict[str, list[Comb]]:
     """The curvature of all curves of each method, as far as they are finite."""
     every = {method: [own[method].pieces for own in made.curves] for method in methods}
     return {m: [comb(own, SPACING * made.em) for own in pieces if is_tame(own, made.em)] for m, pieces in every.items()}
 
 
-def _residuals(axes: Any, label: str, made: Experiment, methods: Sequence[str]) -> None:
+def _residuals(axes: Any, label: str, made: Interpolated, methods: Sequence[str]) -> None:
     """The largest residual of all contours against the iteration, as far as one of those that converge goes."""
     place = axes.get_position()
     width, height = axes.figure.get_size_inches()
@@ -171,7 +169,7 @@ def _residuals(axes: Any, label: str, made: Experiment, methods: Sequence[str]) 
     axes.legend(fontsize=6.5, loc="upper right")
 
 
-def _radii(axes: Any, made: Experiment, method: str) -> None:
+def _radii(axes: Any, made: Interpolated, method: str) -> None:
     """The spectral radius of the composite matrix against the iteration, a line a contour (Fig. 5)."""
     for own in made.curves:
         if (radii := own[method].radii) is not None:
@@ -180,18 +178,18 @@ def _radii(axes: Any, made: Experiment, method: str) -> None:
     axes.tick_params(labelsize=7)
 
 
-def _is_converged(made: Experiment, method: str) -> bool:
+def _is_converged(made: Interpolated, method: str) -> bool:
     return all(own[method].converged for own in made.curves)
 
 
-def _box_of(made: Experiment) -> Box:
+def _box_of(made: Interpolated) -> Box:
     """The box of original and polygon."""
     points = np.concatenate([*(contour.points for contour in made.outline.contours), *made.polygons])
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return float(x0), float(x1), float(y0), float(y1)
 
 
-def _zoom_of(made: Experiment, methods: Sequence[str]) -> Box:
+def _zoom_of(made: Interpolated, methods: Sequence[str]) -> Box:
     """The box around the place where curves lie farthest apart; of a single one, the middle of the glyph."""
     gap, (x, y) = farthest_apart(made.curves, methods)
     if gap < 0:
@@ -208,7 +206,7 @@ def _within(axes: Any, box: Box, room: float = 0.0) -> None:
     axes.set(xlim=(x0 - more, x1 + more), ylim=(y0 - more, y1 + more))
 
 
-def _caption(made: Experiment, methods: Sequence[str], face: str, scale: float, has_radii: bool) -> str:
+def _caption(made: Interpolated, methods: Sequence[str], face: str, scale: float, has_radii: bool) -> str:
     """What the figure shows, in a sentence as papers have it."""
     outline, letters = made.outline, "cdefgh"
     codes = " ".join(f"U+{code:04X}" for code in outline.unicodes[:2])
