@@ -66,6 +66,8 @@ def write_page(
         write_whole(str(out / TIMES), script([times.get(key) for key in keys]))
     pictures = [picture(out / name) for name in means[:1]]
     pictures += [picture(folder / shown(entry["files"])) for folder, entry in drawn]
+    if len(fonts) == 1:
+        rows = [{name: value for name, value in row.items() if name != "font"} for row in rows]
     heading = "Experiments on " + (fonts[0] if len(fonts) == 1 else f"{len(fonts)} fonts")
     tables = [table("Means and quantiles by number of vertices, from the first to the next", list(tally.groups()))]
     if not is_long:
@@ -106,7 +108,7 @@ def table(heading: str, rows: Sequence[dict[str, Any]], with_times: bool = False
         return ""
     head = [heading_of(name) for name in rows[0]] + ["<th>time, ms</th>"] * with_times
     body = "".join(f"<tr>{''.join(f'<td>{cell(value)}</td>' for value in row.values())}</tr>" for row in rows)
-    kind = ' class="timed"' if with_times else ""
+    kind = ' class="numbers timed"' if with_times else ' class="numbers"'
     return (
         f'<h2>{heading}</h2><div class="wide"><table{kind}><thead><tr>{"".join(head)}</tr></thead>'
         f"<tbody>{body}</tbody></table></div>"
@@ -129,4 +131,6 @@ def cell(value: Any) -> str:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:.4g}" if isinstance(value, float) else text(str(value))
+    return (
+        text(value) if isinstance(value, str) else f"{value:.4g}" if value != int(value) or value >= 1e6 else f"{value}"
+    )
