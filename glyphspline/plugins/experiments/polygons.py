@@ -28,6 +28,9 @@ the second: on a long straight stroke one still clicks now and then."""
 TURN, BESIDE = 35.0, 0.028
 """Where the polygon turns by more than so many degrees, clicks are added so far, in em, along long chords."""
 
+SPECK = 40.0
+"""A contour of less than 1/40 em is clicked as if the em were this number of it: one zooms in."""
+
 DENSE, AN_EM, MISSED = 32, 500, 0.0012
 """Points a segment from which arc length is summed up, points an em of length, and how far off clicks are, in em."""
 
@@ -71,6 +74,7 @@ def clicks(contour: Contour, em: float, seed: int = SEED) -> FloatArray:
     from the chord, again and again, until none is farther than ``SAG`` (Ramer, Douglas and Peucker); then each one is
     shaken a little.
     """
+    em = min(em, SPECK * float(np.ptp(contour.points, axis=0).max())) or em
     places = np.arange(len(contour) * DENSE + 1) / DENSE
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(contour.at(places), axis=0).T))])
     length = float(along[-1])

@@ -14,7 +14,7 @@ from ...types import counted
 from ...writers.figures.basics import ascii_text, blank
 from ...writers.svg.comb import SPACING
 from . import VARIANTS
-from .measures import farthest_apart, is_tame
+from .measures import farthest_apart, is_tame, span_points
 from .methods import Interpolated
 from .style import (
     COLOURS,
@@ -45,6 +45,9 @@ LOWEST, HIGHEST = 0.5, 1.45
 
 LEAST_ZOOM, MOST_ZOOM, TIMES = 0.05, 0.1, 8.0
 """Half of the side of what is zoomed, in em: at least, at most, and in distances of the curves there."""
+
+SPECK = 3.0
+"""A glyph of less than a third of an em is drawn as if the em were three of it: teeth, and what is zoomed."""
 
 TINT = "#eef1f4"
 
@@ -86,13 +89,14 @@ def _sheet(made: Interpolated, face: str) -> Any:
     drawn = [m for m in VARIANTS if made.curves and m in made.curves[0]]
     columns, width = max(3, len(drawn)), NARROW if len(drawn) <= 3 else WIDE
     em, box = made.em, _box_of(made)
+    unit = min(em, SPECK * max(box[1] - box[0], box[3] - box[2]))
     ratio = min(max((box[3] - box[2]) / (box[1] - box[0]), LOWEST), HIGHEST)
     each = (width - 2 * EDGE - (columns - 1) * GAP) / columns
     top = (width - 2 * EDGE - 2 * GAP) / 3
     has_radii = any(curve.radii is not None for own in made.curves for curve in own.values())
-    combs = _combs(made, drawn)
+    combs = _combs(made, drawn, unit)
     scale = shared_scale([each for m in drawn if _is_converged(made, m) for each in combs[m]], em) or 1 / em
-    caption = wrap(_caption(made, drawn, face, scale, has_radii), int(width * 17.5))
+    caption = wrap(_caption(made, drawn, face, (TOOTH * unit / em, scale * em), has_radii), int(width * 17.5))
     height = 2 * EDGE + top * min(ratio, 1.1) + each * (2 * ratio + 0.75) + 2 * LABEL + 2 * GAP + LINE * len(caption)
     height += (each * 0.8 + GAP) * has_radii
     figure = blank(width, height)
@@ -105,15 +109,15 @@ def _sheet(made: Interpolated, face: str) -> Any:
         bare(axes)
         _within(axes, box)
         letter(axes, f"{next(names)} {words}")
-    close = _zoom_of(made, drawn)
+    close = _zoom_of(made, drawn, unit)
     shapes = (ratio, LABEL), (0.75, GAP), (ratio, GAP)
     above, zooms, maps = (rows.add(columns, len(drawn), own, below) for own, below in shapes)
     for k, method in enumerate(drawn):
         _column(made, method, (above[k], zooms[k]), (box, close))
         for teeth in combs[method]:
-            draw_comb(maps[k], teeth, COLOURS[method], TOOTH * em / scale, CUT_AT * TOOTH * em)
+            draw_comb(maps[k], teeth, COLOURS[method], TOOTH * unit / scale, CUT_AT * TOOTH * unit)
         bare(maps[k])
-        _within(maps[k], box, CUT_AT * TOOTH * em)
+        _within(maps[k], box, CUT_AT * TOOTH * unit)
         letter(above[k], f"{next(names)} {method}{'' if _is_converged(made, method) else ', not converged'}")
     _residuals(residuals, f"{next(names)} largest error, step by step", made, drawn)
     if has_radii:
@@ -140,10 +144,10 @@ def _column(made: Interpolated, method: str, axes: Sequence[Any], boxes: Sequenc
     zoomed(below, boxes[1])
 
 
-def _combs(made: Interpolated, methods: Sequence[str]) -> dict[str, list[Comb]]:
+def _combs(made: Interpolated, methods: Sequence[str], unit: float) -> dict[str, list[Comb]]:
     """The curvature of all curves of each method, as far as they are finite."""
     every = {method: [own[method].pieces for own in made.curves] for method in methods}
-    return {m: [comb(own, SPACING * made.em) for own in pieces if is_tame(own, made.em)] for m, pieces in every.items()}
+    return {m: [comb(own, SPACING * unit) for own in pieces if is_tame(own, made.em)] for m, pieces in every.items()}
 
 
 def _residuals(axes: Any, label: str, made: Interpolated, methods: Sequence[str]) -> None:
@@ -183,19 +187,21 @@ def _is_converged(made: Interpolated, method: str) -> bool:
 
 
 def _box_of(made: Interpolated) -> Box:
-    """The box of original and polygon."""
-    points = np.concatenate([*(contour.points for contour in made.outline.contours), *made.polygons])
+    """The box of original, polygon, and curves that converged."""
+    curves = [curve for own in made.curves for method, curve in own.items() if method in VARIANTS and curve.converged]
+    lines = [span_points(curve.pieces, curve.places).reshape(-1, 2) for curve in curves]
+    points = np.concatenate([*(contour.points for contour in made.outline.contours), *made.polygons, *lines])
     (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
     return float(x0), float(x1), float(y0), float(y1)
 
 
-def _zoom_of(made: Interpolated, methods: Sequence[str]) -> Box:
+def _zoom_of(made: Interpolated, methods: Sequence[str], unit: float) -> Box:
     """The box around the place where curves lie farthest apart; of a single one, the middle of the glyph."""
     gap, (x, y) = farthest_apart(made.curves, methods)
     if gap < 0:
         left, right, low, high = _box_of(made)
         x, y = (left + right) / 2, (low + high) / 2
-    half = min(max(TIMES * gap, LEAST_ZOOM * made.em), MOST_ZOOM * made.em)
+    half = min(max(TIMES * gap, LEAST_ZOOM * unit), MOST_ZOOM * unit)
     return float(x - half), float(x + half), float(y - 0.75 * half), float(y + 0.75 * half)
 
 
@@ -206,20 +212,20 @@ def _within(axes: Any, box: Box, room: float = 0.0) -> None:
     axes.set(xlim=(x0 - more, x1 + more), ylim=(y0 - more, y1 + more))
 
 
-def _caption(made: Interpolated, methods: Sequence[str], face: str, scale: float, has_radii: bool) -> str:
+def _caption(made: Interpolated, methods: Sequence[str], face: str, tooth: tuple[float, float], has_radii: bool) -> str:
     """What the figure shows, in a sentence as papers have it."""
     outline, letters = made.outline, "cdefgh"
     codes = " ".join(f"U+{code:04X}" for code in outline.unicodes[:2])
     vertices = counted(sum(map(len, made.polygons)), "vertex").replace("vertexs", "vertices")
     last = letters[len(methods)]
     between = ("", "", " and (d)")[len(methods)] if len(methods) < 3 else f" to ({letters[len(methods) - 1]})"
-    reach = scale * made.em
+    length, reach = tooth
     parts = [
         f"{ascii_text(outline.name[:60])}{f' ({codes})' if codes else ''}{f' of {ascii_text(face)}' if face else ''}.",
         f"(a) Original. (b) Polygon: {vertices}, {counted(len(made.polygons), 'contour')}.",
         f"(c){between} Curves through it; below, the dotted",
         "part, where they lie farthest apart, with the polygon dashed, and curvature maps on one scale:",
-        f"teeth are {TOOTH:g} em long at {reach:.3g}/em, and cut at {CUT_AT * reach:.3g}/em.",
+        f"teeth are {length:.2g} em long at {reach:.3g}/em, and cut at {CUT_AT * reach:.3g}/em.",
         f"({last}) Largest distance of a vertex from its footpoint against the step, in 1/1000 em, and the tolerance.",
     ]
     if has_radii:
