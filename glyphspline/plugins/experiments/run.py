@@ -47,12 +47,18 @@ class ExperimentJob(Output, Job[Task, list[Done]]):
     budget = 2000
 
     def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
-        """Outlines; one that is too large is an error."""
+        """Outlines; one that is too large is an error. What takes seconds has a time limit of its own."""
         from ...runs.worker import items
 
         warm_up()
         (source,) = sources(self.place)
-        return items(source.read([task.head for task in tasks]), None, self.spec.limits)
+        found = items(source.read([task.head for task in tasks]), None, self.spec.limits)
+        return [
+            item._replace(kind=head.gid)
+            if isinstance(item, Item) and (self.spec.radii or head.gid in self.drawn)
+            else item
+            for item, (head, _) in zip(found, tasks, strict=True)
+        ]
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """One after the other: each curve is timed by itself."""
