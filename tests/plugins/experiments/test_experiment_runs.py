@@ -150,7 +150,7 @@ def test_bad_calls_end_with_a_sentence(arguments: tuple[str, ...], words: str, t
     assert words in call(BRUSH, *arguments, "--out", tmp_path, status=2)
 
 
-def tally(**columns: dict[str, list[float]]) -> Tally:
+def tally(**columns: dict[str, list[Any]]) -> Tally:
     """Contours with these numbers by variant."""
     found = Tally()
     for variant, own in columns.items():
@@ -181,7 +181,7 @@ def test_a_verdict_is_what_the_numbers_say() -> None:
 
 
 def test_means_are_of_contours_with_about_as_many_vertices() -> None:
-    vertices = [5, 6, 7, 8, 40]
+    vertices: list[Any] = [5, 6, 7, 8, 40]
     found = tally(v2={"vertices": vertices, "iterations": [10, 20, 60, 30, 7]})
     groups = {row["from"]: row for row in found.groups()}
     assert groups.keys() <= {*ENDS}
