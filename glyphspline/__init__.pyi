@@ -39,6 +39,8 @@ from .plugins.datasets.load import load as load
 from .plugins.datasets.run import dataset as dataset
 from .plugins.datasets.spec import DatasetSpec as DatasetSpec
 from .plugins.datasets.table import write_table as write_table
+from .plugins.experiments.api import Experiment as Experiment
+from .plugins.experiments.api import experiment as experiment
 from .plugins.fonts.refit import refit as refit
 from .plugins.fonts.tables.font_file import write_font as write_font
 from .plugins.fonts.ufo_folder import write_ufo as write_ufo

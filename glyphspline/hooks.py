@@ -61,6 +61,7 @@ SERVICES: dict[str, tuple[str, str]] = {
     "check_axis": ("pages along an axis", "whether masters can be converted so: source, tag, options"),
     "cluster": ("a cluster", "an executor on it: its address, the time limit of a batch, kinds of work"),
     "convert_masters": ("all masters", "see :func:`glyphspline.convert_masters`"),
+    "experiment": ("the paper's figures", "see :func:`.experiments.command.demonstrate`"),
     "fetch_fonts": ("a URL", "fonts behind it, in the user's cache: the URL, suffixes of fonts"),
     "fit_masters": ("fits of all masters", "see :func:`.masters.job.convert_font_masters`"),
     "g2_fits": ("continuity g2", "fits: options, tolerance and em in font units, to :class:`.fitting.faithful.Fits`"),

@@ -18,7 +18,8 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "glyphspline"
 
 NEEDS = {
-    "cad": (), "checks": (), "comparing": (), "datasets": (), "drawings": (), "fonts": (), "text": (), "viewer": (),
+    "cad": (), "checks": (), "comparing": (), "datasets": (), "drawings": (), "experiments": (), "fonts": (),
+    "text": (), "viewer": (),
     "masters": ("checks", "fonts"), "mending": ("checks", "fonts", "masters"),
 }  # fmt: skip
 """The plug-ins, and which others each may import."""

@@ -15,7 +15,7 @@ FONT = ROOT / "fonts_test" / "kouzan-gyosho.ttf"
 
 EXPLAINED = (
     "interpolate", "interpolate_many", "convert", "convert_many", "open_font", "Options", "sample", "to_svg",
-    "to_curvature_svg", "Spline", "layout",
+    "to_curvature_svg", "Spline", "layout", "experiment",
 )  # fmt: skip
 
 

@@ -31,7 +31,7 @@ OWN = {
     "report": Listed(".report:report", "Write the gallery, index.html, of one run, or of a folder that holds several."),
     "demo": Listed(
         ".demo:demo",
-        "Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and Latin letters.",
+        "Make the paper's figures for 龍 and 好, convert letters and say where to look; of a font, those of --text.",
     ),
     "warm": Listed(
         ".warm:warm", "Compile everything now, so that no other command has to: for checkouts and containers."

@@ -8,16 +8,16 @@ from typing import Annotated
 
 import typer
 
+from .. import hooks
 from ..files import make_folder, write_whole
-from ..fitting.options import PRESETS, Options
 from ..runs.spec import RunSpec
 from . import arguments as opt
 from .convert import Conversion, opened, run_face, workplace
 from .groups import grouped, only
 from .messages import say, stop
 
-BRUSHED = "龍好"
-"""Characters of the demonstration in brush faces."""
+BRUSHED, LATIN = "龍好", "g&"
+"""Characters of the demonstration, in a brush face and in a Latin one."""
 
 
 @grouped
@@ -29,46 +29,44 @@ def demo(
     ] = None,
     out: opt.Out = Path("outputs/demo"),
 ) -> bool:
-    """Convert a few glyphs and say where to look; without a font, 龍 and 好 of brush faces and Latin letters.
+    """Make the paper's figures for 龍 and 好, convert letters and say where to look; of a font, those of --text.
 
-    龍 and 好 are converted with the preset paper. The package's notebooks are copied to notebooks/.
+    Points of 龍 and 好 are clicked ones. The package's notebooks are copied to notebooks/.
     """
-    undone, shown, paper = False, [], RunSpec(Options(**PRESETS["paper"]))
-    asked = opt.as_typed(subset.text or "")
-    texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
-    specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
-    with workplace(run, *specs) as executor:
-        for (path, text), spec in zip(texts, specs, strict=True):
-            if not run.quiet:
-                say(f"{path.name}: {text}")
-            source = opened(path, opt.Instance(), run.quiet)
-            names = source.select(text=text)
-            if not names:
-                stop(f"{path} has none of {text}: give --text")
-            folder = out / f"{path.stem}-{path.suffix[1:].lower()}"
-            call = Conversion(folder, spec, subset, opt.Instance(), replace(run, resume=False))
-            undone |= run_face(source, names, call, executor).undone
-            shown.append(folder)
+    asked, shown, spec = opt.as_typed(subset.text or ""), list[str](), RunSpec()
+    figures, drawn = (font, font) if font else demo_fonts()
+    with workplace(run, spec) as executor:
+        source = opened(drawn, opt.Instance(), run.quiet)
+        names = source.select(text=asked or (BRUSHED if font else LATIN))
+        if not names:
+            stop(f"{drawn} has none of {asked or BRUSHED}: give --text")
+        if figures_of := hooks.find("services", "experiment"):
+            clicked = None if font or asked else figures.with_suffix(".csv")
+            shown.append(figures_of(figures, asked or BRUSHED, clicked, out / "experiment", run, executor))
+        if not run.quiet:
+            say(f"{drawn.name}: {asked or (BRUSHED if font else LATIN)}")
+        folder = out / f"{drawn.stem}-{drawn.suffix[1:].lower()}"
+        call = Conversion(folder, spec, subset, opt.Instance(), replace(run, resume=False))
+        undone = run_face(source, names, call, executor).undone
+        shown.append(str(folder / "index.html"))
     notebooks = out / "notebooks"
     make_folder(notebooks)
     for path in sorted((Path(__file__).parents[1] / "examples").glob("*.ipynb")):
         write_whole(str(notebooks / path.name), path.read_bytes())
     if not run.quiet:
-        pages = [f"  {folder / 'index.html'}" for folder in shown]
         typer.echo("\n".join([
-            "Open in a browser:", *pages, "Drawings are in svg/ beside it, curvature maps in curvature/.",
+            "Open in a browser:", *(f"  {page}" for page in shown),
+            "Drawings are in svg/ beside it, curvature maps in curvature/.",
             f"Open in Jupyter: {notebooks / 'example.ipynb'}",
         ]))  # fmt: skip
     return undone
 
 
-def demo_fonts() -> list[tuple[Path, str]]:
-    """The fonts and characters shown when none are given: the repository's, and one that comes with matplotlib."""
-    fonts = Path(__file__).parents[2] / "fonts_test"
-    if not (fonts / "kouzan-gyosho.ttf").exists():
+def demo_fonts() -> tuple[Path, Path]:
+    """The fonts shown when none is given: the repository's, for figures, and one that comes with matplotlib."""
+    brush = Path(__file__).parents[2] / "fonts_test" / "kouzan-gyosho.ttf"
+    if not brush.exists():
         stop("the demonstration fonts are in the repository's fonts_test/; here, give a font: glyphspline demo FONT")
     import matplotlib
 
-    dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
-    brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
-    return [(dejavu, "g&"), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
+    return brush, Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"

@@ -22,6 +22,7 @@ def page_of(
     setup: Any = None,
     *,
     loads: bool = False,
+    pictures: bool = False,
     facts: Sequence[str] = (),
     own: Sequence[Path] = (),
     **parts: str,
@@ -32,12 +33,17 @@ def page_of(
         template: file with the page's body. styles, scripts: files, in the order of their dependencies.
             All are of this package, or in ``own`` folders of plug-ins.
         heading: title of the page, as text. setup: data that the scripts read from the element ``setup``.
-        loads: whether it loads scripts and drawings that lie beside it. facts: sentences of the template, as text.
+        loads: whether it loads scripts and drawings that lie beside it. pictures: whether it has some in itself.
+        facts: sentences of the template, as text.
         parts: what else it has, as HTML.
     """
     script = "".join(package_text(name, own) for name in scripts)
     beside = ["'self'", "file:"] * loads
-    allowed: dict[str, list[str]] = {"script-src": [], "style-src": ["'unsafe-inline'"], "img-src": beside}
+    allowed: dict[str, list[str]] = {
+        "script-src": [],
+        "style-src": ["'unsafe-inline'"],
+        "img-src": [*beside, *["data:"] * pictures],
+    }
     run = ""
     if script:
         digest = b64encode(sha256(("\n" + script).encode()).digest()).decode()

@@ -23,9 +23,9 @@ import numpy as np
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic
 from glyphspline.curves.cubics import hidden_extrema
+from glyphspline.plugins.experiments.measures import curvature_variation
 from glyphspline.types import FloatArray
 
-from ..paper.measures import curvature_variation
 from ..survey import distances, faces, sampled
 from .kurbo_fit import kurbo_results
 from .measure import Row

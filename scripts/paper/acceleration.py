@@ -13,11 +13,12 @@ import glyphspline as gs
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.polygon import as_tangents
 from glyphspline.interpolation.reference import iterate
+from glyphspline.plugins.experiments.style import COLOURS
 from glyphspline.types import FloatArray
 
 from ..benchmark.batch import least, seconds
-from .clicking import FONTS
-from .common import COLOURS, Run, random_polygons
+from .common import Run, random_polygons
+from .faces import FONTS
 from .passes import Passes
 from .study import TOLERANCE
 

@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 
 import glyphspline as gs
 from glyphspline.interpolation.intervals import basis_function
+from glyphspline.plugins.experiments.style import COLOURS, GREY, INK, bare
 from glyphspline.types import FloatArray
 
-from .common import COLOURS, GREY, INK, SEED, Run, bare, draw_series, random_polygons
+from .common import SEED, Run, draw_series, random_polygons
 from .study import MAX_ITERATIONS, TOLERANCE
 from .theorems import MARGIN, step_factors
 

@@ -8,7 +8,6 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +19,10 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from PIL import Image
 
+from glyphspline.plugins.experiments.style import COLOURS, MARKERS, small, style
 from glyphspline.types import FloatArray
+from glyphspline.writers.figures.basics import saved
 
 PAPER = (
     "Y. Xiong, G. Li, A. Mao, “Convergence analysis for B-spline geometric interpolation”, "
@@ -39,13 +39,7 @@ GROUPS = (5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90)
 SIDE = 5.0
 """Vertices are uniform in [0, SIDE]²."""
 
-INK = "#1f2933"
-GREY = "#9aa5b1"
-SHADES = "#b7472a", "#2f6db5", "#12876f", "#d98e04", "#7b4fa3"
-COLOURS = {f"variant {v}": shade for v, shade in enumerate(SHADES)}
-MARKERS = dict(zip(COLOURS, "xos^D", strict=True))
-
-plt.style.use(Path(__file__).with_name("pictures.mplstyle"))
+plt.rcParams.update(style())
 
 
 def random_polygons(n: int, count: int, seed: int = SEED) -> list[FloatArray]:
@@ -131,13 +125,9 @@ class Run:
 
     def save(self, figure: Figure, name: str, svg: bool = False) -> None:
         """Write a picture without date or random ids."""
-        picture = BytesIO()
-        figure.savefig(picture, format="png", metadata={"Software": None})
-        with Image.open(picture) as drawn:  # with a palette of its own: half of the bytes, and nothing to be seen
-            few = drawn.convert("RGB").quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
-        few.save(self.out / f"{name}.png", optimize=True)
+        (self.out / f"{name}.png").write_bytes(small(saved(figure, "png", plt.rcParams["savefig.dpi"])))
         if svg:
-            figure.savefig(self.out / f"{name}.svg", metadata={"Date": None})
+            (self.out / f"{name}.svg").write_bytes(saved(figure, "svg"))
         plt.close(figure)
 
 
@@ -177,24 +167,6 @@ def draw_series(axes: Axes, series: dict[str, dict[str, float]], **style: Any) -
     for name, values in series.items():
         x = [int(n) for n in values]
         axes.plot(x, list(values.values()), color=COLOURS[name], marker=MARKERS[name], label=name, **style)
-
-
-def draw_closed(axes: Axes, points: FloatArray, **style: Any) -> None:
-    """A closed polyline."""
-    x, y = np.concatenate([points, points[:1]]).T
-    axes.plot(x, y, **style)
-
-
-def bare(axes: Axes, margin: float = 0.03) -> None:
-    """Equal units, no frame."""
-    axes.set_aspect("equal")
-    axes.margins(margin)
-    axes.axis("off")
-
-
-def letter(axes: Axes, text: str) -> None:
-    """A subfigure's label, below it as in the paper."""
-    axes.text(0.5, -0.04, text, transform=axes.transAxes, ha="center", va="top", fontsize=8.5)
 
 
 def curve_points(spline: Any, per_span: int = 24) -> FloatArray:

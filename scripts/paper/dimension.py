@@ -12,8 +12,8 @@ import glyphspline as gs
 from glyphspline.interpolation.polygon import lengths
 from glyphspline.types import FloatArray
 
-from .clicking import FONTS
 from .common import SEED, SIDE, Run, draw_series
+from .faces import FONTS
 from .smooth_curves import nearest
 from .study import MAX_ITERATIONS, TOLERANCE
 

@@ -10,34 +10,24 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from scipy.interpolate import make_interp_spline
 from scipy.spatial import ConvexHull
 
 import glyphspline as gs
-from glyphspline.curves.bezier import cross, evaluate
+from glyphspline.curves.bezier import cross
 from glyphspline.interpolation.method import Parametrisation
-from glyphspline.interpolation.polygon import vertex_parameters
+from glyphspline.plugins.experiments.measures import bulge, curvature_variation, span_points
+from glyphspline.plugins.experiments.methods import places_of, scipy_pieces
+from glyphspline.plugins.experiments.style import COLOURS, GREY, INK
 from glyphspline.readers.opentype.font import open_font
 from glyphspline.types import FloatArray
 
-from .clicking import DATA, FONTS
-from .common import COLOURS, GREY, INK, Run, verdict
-from .measures import curvature_variation, shape
+from .common import Run, verdict
+from .faces import CHARACTERS, DATA, FONTS
+from .measures import shape
 
 METHODS = ("variant 1", "variant 2", "variant 3", "SciPy chord", "SciPy centripetal", "SciPy uniform")
 MEASURES = ("∫κ² ds", "∫(dκ/ds)² ds", "max |κ|", "bulge", "overshoot", "self-crossings")
 Quality = dict[str, float]
-
-PER_PIECE = 16
-"""Points of a piece for distances and crossings."""
-
-
-def scipy_pieces(polygon: FloatArray, knots: Parametrisation) -> FloatArray:
-    """(n, 4, 2) Bézier pieces of SciPy's periodic interpolating cubic, from its values and slopes at the knots."""
-    u = vertex_parameters(polygon, knots)
-    curve = make_interp_spline(u, np.concatenate([polygon, polygon[:1]]), k=3, bc_type="periodic")
-    value, slope, h = curve(u), curve(u, 1), np.diff(u)[:, None]
-    return np.stack([value[:-1], value[:-1] + h / 3 * slope[:-1], value[1:] - h / 3 * slope[1:], value[1:]], axis=1)
 
 
 def curves_of(polygon: FloatArray, tolerance: float) -> dict[str, tuple[FloatArray, FloatArray]]:
@@ -52,35 +42,9 @@ def curves_of(polygon: FloatArray, tolerance: float) -> dict[str, tuple[FloatArr
     return curves
 
 
-def _places(spline: gs.Spline, t: FloatArray) -> FloatArray:
-    """Parameters as piece number plus fraction of the piece; those before 0 stay negative."""
-    n, T = len(spline.knots) - 1, spline.period
-    lap = np.floor(t / T)
-    return np.asarray(lap * n + np.interp(t - lap * T, spline.knots, np.arange(n + 1)))
-
-
-def _span_points(pieces: FloatArray, places: FloatArray) -> FloatArray:
-    """(n, PER_PIECE + 1, 2) points of the curve between the places of neighbouring vertices."""
-    n = len(pieces)
-    after = np.append(places[1:], places[0] + n)
-    at = places[:, None] + (after - places)[:, None] * np.linspace(0, 1, PER_PIECE + 1)
-    piece = np.floor(at).astype(np.int64)
-    return evaluate(pieces[(piece % n).ravel()], (at - piece).ravel()).reshape(n, -1, 2)
-
-
-def bulge(pieces: FloatArray, places: FloatArray, polygon: FloatArray) -> float:
-    """Largest distance of the curve between two neighbouring vertices from the chord that joins them."""
-    points = _span_points(pieces, places)
-    a = polygon[:, None]
-    chord = np.roll(polygon, -1, axis=0)[:, None] - a
-    along = np.clip(((points - a) * chord).sum(axis=2) / (chord**2).sum(axis=2), 0, 1)
-    gap = points - a - along[..., None] * chord
-    return float(np.hypot(gap[..., 0], gap[..., 1]).max())
-
-
 def curve_of(result: gs.Interpolation) -> tuple[FloatArray, FloatArray]:
     """The Bézier pieces of an interpolation, and the parameters of the vertices counted in pieces."""
-    return result.spline.to_bezier(), _places(result.spline, result.parameters)
+    return result.spline.to_bezier(), places_of(result.spline, result.parameters)
 
 
 def overshoot(points: FloatArray, polygon: FloatArray) -> float:
@@ -106,7 +70,7 @@ def self_crossings(line: FloatArray) -> int:
 
 def quality(pieces: FloatArray, places: FloatArray, polygon: FloatArray) -> Quality:
     """All measures of one curve."""
-    line = _span_points(pieces, places)[:, :-1].reshape(-1, 2)
+    line = span_points(pieces, places)[:, :-1].reshape(-1, 2)
     measured = shape(pieces)
     return {
         "∫κ² ds": measured.bending_energy,
@@ -151,11 +115,11 @@ def glyph_polygons(run: Run) -> dict[str, list[FloatArray]]:
 
 def figure_polygons() -> dict[str, list[FloatArray]]:
     """The polygons of Figs. 6 to 9, by figure."""
-    polygons: dict[str, list[FloatArray]] = {}
-    for name, stem in (("Fig. 6", "fig-6"), ("Fig. 7", "fig-7"), ("Fig. 8", "dragon"), ("Fig. 9", "good")):
-        data = json.loads((DATA / f"{stem}.json").read_text(encoding="utf-8"))
-        polygons[name] = [np.array(p) for p in data.get("polygons", [data.get("polygon")])]
-    return polygons
+    drawn = {
+        name: [np.array(json.loads((DATA / f"{stem}.json").read_text(encoding="utf-8"))["polygon"])]
+        for name, stem in (("Fig. 6", "fig-6"), ("Fig. 7", "fig-7"))
+    }
+    return drawn | {each.source: each.polygons() for each in CHARACTERS}
 
 
 def summary(values: list[dict[str, Quality]]) -> dict[str, dict[str, float]]:

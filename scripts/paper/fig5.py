@@ -6,29 +6,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-import glyphspline as gs
+from glyphspline.plugins.experiments.methods import CUT, composite_radii
+from glyphspline.plugins.experiments.style import COLOURS, INK
 from glyphspline.types import FloatArray
 
-from .common import COLOURS, INK, Run, verdict
-from .study import MAX_ITERATIONS, TOLERANCE
-
-CUT = 100
-"""Steps of variant 0 that are followed."""
+from .common import Run, verdict
+from .study import TOLERANCE
 
 COUNT = 60
 """Polygons a group: all 200 take over three times as long."""
-
-
-def radii(polygon: FloatArray, variant: int) -> FloatArray:
-    """(iterations,) spectral radius of the composite matrix after each update."""
-    limit = CUT if variant == 0 else MAX_ITERATIONS
-    options = {"residual_tolerance": TOLERANCE, "max_iterations": limit}
-    r = gs.interpolate(polygon, variant, diagnostics=variant != 3, **options)  # type: ignore[arg-type]
-    if variant == 3:  # never moves its footpoints: the composite matrix is a power, its spectral radius one too
-        factor = np.eye(len(polygon)) - r.spline.basis(r.parameters)
-        return np.asarray(float(np.abs(np.linalg.eigvals(factor)).max()) ** np.arange(1, r.iterations + 1))
-    assert r.spectral_radii is not None
-    return r.spectral_radii
 
 
 def figure_5(run: Run) -> None:
@@ -36,7 +22,7 @@ def figure_5(run: Run) -> None:
     polygons = [p for group in run.polygons().values() for p in group[:COUNT]]
     curves: dict[int, list[FloatArray]] = {}
     for v in (0, 1, 2, 3):
-        curves[v] = [radii(p, v) for p in polygons]
+        curves[v] = [composite_radii(p, v, TOLERANCE) for p in polygons]
     measured = {f"variant {v}": _summary(curves[v]) for v in curves}
     grown = [table["% of polygons at 1 or more in the end"] for table in measured.values()]
     _, one, two, three = (table["median iterations to 1e-3"] for table in measured.values())

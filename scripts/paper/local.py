@@ -20,10 +20,11 @@ import glyphspline as gs
 from glyphspline.curves.bspline import Spline, bezier_pieces
 from glyphspline.interpolation.method import Method, Parametrisation
 from glyphspline.interpolation.reference import prepare
+from glyphspline.plugins.experiments.style import COLOURS
 from glyphspline.types import FloatArray, IntArray
 
 from ..benchmark.measure import interleaved
-from .common import COLOURS, Run, draw_series, verdict
+from .common import Run, draw_series, verdict
 from .study import MAX_ITERATIONS, TOLERANCE
 
 POWERS = np.array([[-1.0, 3, -3, 1], [3, -6, 3, 0], [-3, 3, 0, 0], [1, 0, 0, 0]])

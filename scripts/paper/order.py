@@ -14,9 +14,10 @@ import glyphspline as gs
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.polygon import vertex_parameters
 from glyphspline.interpolation.reference import iterate
+from glyphspline.plugins.experiments.style import COLOURS, GREY, INK, MARKERS
 from glyphspline.types import FloatArray
 
-from .common import COLOURS, GREY, INK, MARKERS, Run
+from .common import Run
 from .passes import Passes
 from .smooth_curves import ELLIPSE, SAMPLINGS, TREFOIL, Waves, distance, order, steps
 

@@ -16,11 +16,13 @@ from matplotlib.figure import Figure
 import glyphspline as gs
 from glyphspline.curves.bspline import Spline
 from glyphspline.interpolation.polygon import vertex_parameters
+from glyphspline.plugins.experiments.measures import curvature_variation
+from glyphspline.plugins.experiments.style import COLOURS, GREY, INK, MARKERS
 from glyphspline.types import FloatArray
 
-from .common import COLOURS, GREY, INK, MARKERS, Run, random_polygons
+from .common import Run, random_polygons
 from .fairness import curve_of, quality
-from .measures import curvature_variation, shape
+from .measures import shape
 from .smooth_curves import Waves, distance, polar
 from .study import MAX_ITERATIONS, TOLERANCE
 

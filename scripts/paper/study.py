@@ -11,9 +11,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
+from glyphspline.plugins.experiments.style import COLOURS, INK
 from glyphspline.types import BoolArray, FloatArray, IntArray
 
-from .common import COLOURS, INK, Run, draw_series, random_polygons, verdict
+from .common import Run, draw_series, random_polygons, verdict
 
 TOLERANCE = 1e-6
 MAX_ITERATIONS = 1000

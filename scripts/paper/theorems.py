@@ -9,9 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import glyphspline as gs
+from glyphspline.plugins.experiments.style import COLOURS, GREY, INK, bare, draw_closed
 from glyphspline.types import FloatArray
 
-from .common import COLOURS, GREY, INK, SEED, Run, bare, curve_points, draw_closed, random_polygons, verdict
+from .common import SEED, Run, curve_points, random_polygons, verdict
 from .local import LocalMethod
 from .study import MAX_ITERATIONS, TOLERANCE
 

@@ -8,10 +8,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
+from glyphspline.plugins.experiments.style import COLOURS, INK, MARKERS
 from glyphspline.types import FloatArray
 
 from .certified import POLYNOMIALS, Constraint, certify, crossing, peak_values, root, threshold, worst_corner
-from .common import COLOURS, INK, MARKERS, SEED, Run, random_polygons, verdict
+from .common import SEED, Run, random_polygons, verdict
 from .study import Group, mean_iterations, study_group
 
 VECTORS = 10_000

@@ -44,6 +44,7 @@ DONE = [
     "check {gyosho} --text O -j 0",
     "diff {gyosho} {gyosho} --text O -j 0",
     "demo {gyosho} --text O -j 0 -o {new}",
+    "experiment {gyosho} --text O --sheets 0 -j 0 -o {new}",
 ]
 UNDONE = [
     f"{CONVERT} --text O龘",  # a character is missing

@@ -12,8 +12,9 @@ from glyphspline.curves import fairness
 from glyphspline.curves.bezier import derivative_points, evaluate, signed_curvature, split
 from glyphspline.curves.fairness import SHARE, TURN, extrema_of
 from glyphspline.fitting.measures import CORNER, extrema_floor
+from glyphspline.plugins.experiments.measures import curvature_variation
 from glyphspline.types import FloatArray
-from scripts.paper.measures import curvature_variation, shape
+from scripts.paper.measures import shape
 from tests.drawings import circle, polygon_contour
 from tests.places import FONTS
 from tests.polygons import circle_contour, square_contour

@@ -38,6 +38,7 @@ HOST = "127.0.0.1"
 
 PACKAGES = {
     **dict.fromkeys(("viewer.html", "viewer.css", "viewer_stage.js", "viewer_chart.js", "viewer.js"), __package__),
+    **dict.fromkeys(("clicking.html", "clicking.css", "clicking.js"), __package__),
     **dict.fromkeys(("theme.css", "page.js", "shapes.js"), "glyphspline.report"),
 }
 """All static files and their packages: no path of a request reaches the file system."""
