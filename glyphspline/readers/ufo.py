@@ -114,7 +114,7 @@ class Ufo(EditableSource):
         return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
 
     def _drawn(self, name: str) -> tuple[ContourPen, _Glyph]:
-        pen, glyph = ContourPen(self.default_layer, name), self.default_layer[name]
+        pen, glyph = ContourPen(self.default_layer, name, strokes=True), self.default_layer[name]
         glyph.draw(pen)
         pen.finish()
         return pen, glyph

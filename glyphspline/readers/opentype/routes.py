@@ -78,7 +78,7 @@ class Face:
             name = self._tables.getGlyphName(head.gid)
             if self.normalized:
                 check_variations(self._tables, name)
-            pen = ContourPen(self._glyphs, name)
+            pen = ContourPen(self._glyphs, name, strokes=True)
             glyph = self._glyphs[name]
             glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
             pen.finish()

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...fitting.results import GlyphResult
+from ...outlines.open_paths import are_open
 from ..settings import CURRENT, PLAIN_MAPS, Combs, ImageKind, Maps, Settings
 from ..svg.comb import SIDES, SOURCE, colour_classes, curvature_scale, legend, palette, shown_by, teeth
 from ..svg.document import em_box, shown_box
@@ -48,7 +49,18 @@ def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: 
     fill, stroke = ("black" if colour == CURRENT else colour for colour in (look.fill, look.stroke))
     line = look.line(outline.metrics.units_per_em, height) * inches * 72 / height
     curves = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
-    for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
+    opened = are_open(glyph.arrays.curves).tolist()
+    closed, strokes = ([c for c, cut in zip(curves, opened, strict=True) if cut is which] for which in (False, True))
+    patches = outline_patch(closed, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0)
+    if strokes:
+        colour, width = look.open_line(outline.metrics.units_per_em, height)
+        colour = "black" if colour == CURRENT else colour
+        width *= inches * 72 / height
+        patches += outline_patch(
+            [cubics[: len(cubics) // 2] for cubics in strokes], facecolor="none", edgecolor=colour, linewidth=width,
+            capstyle="round", joinstyle="round",
+        )  # fmt: skip
+    for patch in patches:
         patch.set_clip_on(False)
         axes.add_patch(patch)
     return saved(figure, kind, dpi)
