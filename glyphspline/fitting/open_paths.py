@@ -43,10 +43,7 @@ def convert_open(contours: ContourArrays, options: Options, tolerance: float, em
     Raises:
         GlyphsplineError: a contour that cannot be fitted; its ``contour`` is the index.
     """
-    if options.is_fixed:
-        found = _through_points(contours, options)
-    else:
-        found = _within(contours, options, tolerance, em)
+    found = _through_points(contours, options) if options.is_fixed else _within(contours, options, tolerance, em)
     if options.is_fixed and not options.measure:
         return found
     columns = {**with_geometry(found, options).measures}

@@ -228,7 +228,7 @@ class ConvertedContours:
 
     @property
     def whole_splines(self) -> tuple[FloatArray, Polylines]:
-        """Knots and control points of closed splines end to end, of open paths there and back: :func:`.whole_splines`."""
+        """Knots and control points of closed splines, of open paths there and back: see :func:`.whole_splines`."""
         return whole_splines(self.curves, self.arcs, self.controls, self.arc_offsets)
 
     def contour_results(self) -> list[ContourResult]:

@@ -19,6 +19,9 @@ from .contour_arrays import ContourArrays, end_to_end, offsets_of
 SPECK = 10.0
 """Width and height in font units up to which a closed contour that retraces itself is a rest of an edit, no stroke."""
 
+MOST_JOINTS = 1000
+"""Joints of a contour up to which its lines are cut at them: each is compared with each."""
+
 Path = tuple[FloatArray, IntArray]
 """Points (..., N + 1, 2), and degrees (m,) whose sum is N, of an open path."""
 
@@ -54,7 +57,7 @@ def paths(contours: ContourArrays, opened: BoolArray) -> ContourArrays:
 
 
 def by_kind(opened: BoolArray, glyphs: IntArray) -> Iterator[tuple[IntArray, IntArray]]:
-    """Of the closed contours, and then of the open ones: their numbers, and (G + 1,) where those of each glyph begin."""
+    """Of closed contours, and then of open ones: their numbers, and (G + 1,) where those of each glyph begin."""
     for which in (np.flatnonzero(~opened), np.flatnonzero(opened)):
         yield which, np.searchsorted(which, glyphs)
 
@@ -89,8 +92,8 @@ def retraced(points: FloatArray, degrees: IntArray, coincident: float) -> list[P
     path, _ = lasting_path(np.concatenate([points, points[:, :1]], axis=1) + 0.0, degrees, coincident)
     if path is None:
         return []
-    closed, degrees = path
-    closed[:, -1] = closed[:, 0]
+    path[0][:, -1] = path[0][:, 0]
+    closed, degrees = _cut_at_joints(*path) if len(points) == 1 else path
     segments = [closed[:, a : b + 1] for a, b in pairwise(offsets_of(degrees).tolist())]
     forth = [each.tobytes() for each in segments]
     back = [np.ascontiguousarray(each[:, ::-1]).tobytes() for each in segments]
@@ -111,6 +114,26 @@ def retraced(points: FloatArray, degrees: IntArray, coincident: float) -> list[P
         (np.concatenate([*(segments[j][:, :-1] for j in each), segments[each[-1]][:, -1:]], axis=1), degrees[each])
         for each in found
     ]
+
+
+def _cut_at_joints(points: FloatArray, degrees: IntArray) -> Path:
+    """A path (1, N + 1, 2) whose lines are cut at its joints on them: the way back may leave them out."""
+    ends = offsets_of(degrees)
+    joints = np.unique(points[0, ends], axis=0)
+    if len(joints) > MOST_JOINTS:
+        return points, degrees
+    parts, kinds = [points[0, :1]], list[int]()
+    for a, b in pairwise(ends.tolist()):
+        own = points[0, a : b + 1]
+        inner = own[1:1]
+        if b - a == 1:
+            (dx, dy), (x, y) = own[1] - own[0], (joints - own[0]).T
+            along = dx * x + dy * y
+            on = (np.abs(dx * y - dy * x) <= 1e-9 * (dx * dx + dy * dy)) & (along > 0) & (along < dx * dx + dy * dy)
+            inner = joints[on][np.argsort(along[on], kind="stable")]
+        parts += [inner, own[1:]]
+        kinds += [1] * len(inner) + [b - a]
+    return np.concatenate(parts)[None], np.array(kinds, dtype=np.int64)
 
 
 def without_area(points: FloatArray, starts: IntArray) -> BoolArray:

@@ -100,19 +100,22 @@ class Contour:
         """The contour in the opposite direction from the same start point."""
         return Contour(np.roll(self.points[::-1], 1, axis=0), self.degrees[::-1])
 
-    def draw(self, pen: Any, closing: bool = True) -> None:
-        """Draw with any fontTools segment pen; ``closing``: with a last line, which ``closePath`` implies.
+    def draw(self, pen: Any, closing: bool = True, stays_open: bool = True) -> None:
+        """Draw with any fontTools segment pen.
 
-        An open path ends with ``endPath``.
+        Args:
+            closing: with a last line, which ``closePath`` implies.
+            stays_open: an open path ends with ``endPath``; else it is drawn there and back, as in fonts.
         """
         closed = [tuple(point) for point in np.concatenate([self.points, self.points[:1]]).tolist()]
         pen.moveTo(closed[0])
         drawn = len(self) - (not closing and len(self) > 1 and self.degrees[-1] == 1)
-        drawn = len(self) // 2 if self.is_open else drawn
+        opens = stays_open and self.is_open
+        drawn = len(self) // 2 if opens else drawn
         for offset, degree in zip(self.offsets[:drawn].tolist(), self.degrees[:drawn].tolist(), strict=True):
             to = closed[offset + 1 : offset + degree + 1]
             (pen.lineTo, pen.qCurveTo, pen.curveTo)[degree - 1](*to)
-        (pen.endPath if self.is_open else pen.closePath)()
+        (pen.endPath if opens else pen.closePath)()
 
 
 class Contours(Views[Contour]):

@@ -31,8 +31,8 @@ def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
         return outline, None
     if (opened := are_open(outline.arrays)).any():
         closed, strokes = (outline.arrays.chosen(np.flatnonzero(which)) for which in (~opened, opened))
-        united, note = remove_overlaps(replace(outline, contours=Contours(closed)))
-        return replace(united, contours=Contours(joined([united.arrays, strokes]))), note
+        filled, note = remove_overlaps(replace(outline, contours=Contours(closed)))
+        return replace(filled, contours=Contours(joined([filled.arrays, strokes]))), note
     areas = [area(contour.cubics()) for contour in outline.contours]
     clockwise = max(areas, key=abs) < 0  # the contour of the largest area is not a hole
     try:

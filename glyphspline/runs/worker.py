@@ -174,8 +174,8 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
             "result": both_ways(glyph.path, result.arrays.curves, precision), "polygon": polygon, "control": control,
         }  # fmt: skip
         return glyph_text(shown, files, glyph.measures or (), glyph.axes)
-    path, box = {"path": glyph.path}, {"ink": glyph.path.box}
-    shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": box, "pdf": box}
+    path = {"path": glyph.path}
+    shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": path, "pdf": path}
     known = shared.get(name, {})
     if name in MAPS:
         em = result.outline.metrics.units_per_em

@@ -11,7 +11,7 @@ import numpy as np
 from ...errors import OptionError
 from ...fitting.results import GlyphResult, end_to_end
 from ...writers.settings import PLAIN, Appearance
-from ...writers.svg.document import head, number, painting, shown_as, shown_box, stroking, text
+from ...writers.svg.document import head, inked, number, painting, shown_as, shown_box, stroking, text
 from ...writers.svg.path_data import curves_data
 from .placed import Layout
 
@@ -41,8 +41,8 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     names = [
         f' data-glyph="{text(result.outline.name)}" href="#{own}' for own, result in zip(ids, results, strict=True)
     ]
-    ink = curves_data(layout.placed(results).arrays.curves, precision)[0].box
-    box = shown_box(layout.box, ink, look.view_box)
+    ink = curves_data(layout.placed(results).arrays.curves, precision)[0]
+    box = shown_box(layout.box, inked(ink, look, em), look.view_box)
     value, shape = shown_as(box, look, em, precision)
     units = f' data-units-per-em="{number(em, precision)}"'
     parts = [head(value, text(layout.text), units, shape), "<defs>\n"]

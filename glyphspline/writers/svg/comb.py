@@ -58,6 +58,10 @@ class Teeth:
     relative: FloatArray
     cut: BoolArray
 
+    def there_and_back(self) -> Teeth:
+        """Those of an open path, twice, so that a line through their tips is closed."""
+        return Teeth(*(np.concatenate([each, each[::-1]]) for each in astuple(self)))
+
     def placed(self, place: Callable[[FloatArray], FloatArray]) -> Teeth:
         """The teeth, moved by a map of points."""
         return Teeth(place(self.feet), place(self.tips), self.relative, self.cut)
@@ -124,7 +128,8 @@ def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
 def sides_and_corners(
     glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """(C,) sides of the ink, 1.0 of open paths, which have none; (k, 2) corners in whose turn teeth have no length, (C + 1,) where each contour's begin.
+    """(C,) sides of the ink, 1.0 of open paths, which have none; (k, 2) corners in whose turn teeth have no length,
+    (C + 1,) where each contour's begin.
 
     Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
     curvatures.
@@ -148,7 +153,7 @@ def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corne
     found, opened = [], are_open(curves)
     for item, c in zip(combs(glyph, 1.0, whose), np.flatnonzero(np.diff(curves.offsets)).tolist(), strict=True):
         own = teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
-        found.append(Teeth(*(np.concatenate([each, each[::-1]]) for each in astuple(own))) if opened[c] else own)
+        found.append(own.there_and_back() if opened[c] else own)
     return found
 
 

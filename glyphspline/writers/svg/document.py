@@ -78,7 +78,7 @@ def write_svg(result: GlyphResult, settings: Settings, path: PathData | None = N
     outline, precision, look = result.outline, result.options.precision, settings.look
     path = path or curves_data(result.arrays.curves, precision)[0]
     em = outline.metrics.units_per_em
-    box = shown_box(em_box(outline), path.box, look.view_box)
+    box = shown_box(em_box(outline), inked(path, look, em), look.view_box)
     value, shape = shown_as(box, look, em, precision)
     height, end = float(value.split()[3]), "" if look.bare else "\n"
     drawn = [f'<path{painting(look, em, height)} d="{path.text}"/>{end}'] if path.text or not path.strokes else []
@@ -121,6 +121,15 @@ def stroking(look: Appearance, em: float, height: float) -> str:
         f' fill="none" stroke="{text(colour)}" stroke-width="{number(line, 3)}" stroke-linecap="round"'
         ' stroke-linejoin="round"'
     )
+
+
+def inked(path: PathData, look: Appearance, em: float) -> Box | None:
+    """The box around a glyph, with the width of the lines that open paths are drawn as."""
+    if path.box is None or not path.strokes:
+        return path.box
+    left, bottom, right, top = path.box
+    half = look.open_line(em, max(top - bottom, 1.0))[1] / 2
+    return left - half, bottom - half, right + half, top + half
 
 
 def em_box(outline: Outline) -> Box:
