@@ -188,7 +188,7 @@ class Layout:
         return joined_where_touching(parts) if united else parts
 
     def _fitted(self, parts: Parts, options: Options, fit: Fit | None) -> list[GlyphResult]:
-        outlines = list(parts.outlines)
+        outlines, options = list(parts.outlines), options.for_em(self.fonts[0].metrics.units_per_em)
         steps, quarters = parts.origin * 10.0**options.precision, parts.angle * (2.0 / np.pi)
         if any(
             np.abs(values - np.round(values)).max(initial=0.0) > 1e-6 for values in (steps, quarters)
