@@ -16,12 +16,6 @@ import numpy as np
 from ..types import BoolArray, FloatArray, IntArray
 from .contour_arrays import ContourArrays, end_to_end, offsets_of
 
-SPECK = 10.0
-"""Width and height in font units up to which a closed contour that retraces itself is a rest of an edit, no stroke."""
-
-MOST_JOINTS = 1000
-"""Joints of a contour up to which its lines are cut at them: each is compared with each."""
-
 Path = tuple[FloatArray, IntArray]
 """Points (..., N + 1, 2), and degrees (m,) whose sum is N, of an open path."""
 
@@ -83,17 +77,15 @@ def retraced(points: FloatArray, degrees: IntArray, coincident: float) -> list[P
     """The strokes of a closed contour in K masters (K, N, 2) that runs over each of its segments once each way.
 
     From a joint where it turns back on, what it has not run over before are strokes: one of a path there and back,
-    several where it branches. Of any other contour, and of a speck, there are none.
+    several where it branches. Of any other contour there are none.
     """
-    with np.errstate(all="ignore"):  # coordinates that are not finite are refused later
-        wide = (np.ptp(points, axis=1) > SPECK).any()
-    if not (wide and without_area(points[0], np.array([0, points.shape[1]]))[0]):
+    if not without_area(points[0], np.array([0, points.shape[1]]))[0]:
         return []
     path, _ = lasting_path(np.concatenate([points, points[:, :1]], axis=1) + 0.0, degrees, coincident)
     if path is None:
         return []
-    path[0][:, -1] = path[0][:, 0]
-    closed, degrees = _cut_at_joints(*path) if len(points) == 1 else path
+    closed, degrees = path
+    closed[:, -1] = closed[:, 0]
     segments = [closed[:, a : b + 1] for a, b in pairwise(offsets_of(degrees).tolist())]
     forth = [each.tobytes() for each in segments]
     back = [np.ascontiguousarray(each[:, ::-1]).tobytes() for each in segments]
@@ -116,31 +108,11 @@ def retraced(points: FloatArray, degrees: IntArray, coincident: float) -> list[P
     ]
 
 
-def _cut_at_joints(points: FloatArray, degrees: IntArray) -> Path:
-    """A path (1, N + 1, 2) whose lines are cut at its joints on them: the way back may leave them out."""
-    ends = offsets_of(degrees)
-    joints = np.unique(points[0, ends], axis=0)
-    if len(joints) > MOST_JOINTS:
-        return points, degrees
-    parts, kinds = [points[0, :1]], list[int]()
-    for a, b in pairwise(ends.tolist()):
-        own = points[0, a : b + 1]
-        inner = own[1:1]
-        if b - a == 1:
-            (dx, dy), (x, y) = own[1] - own[0], (joints - own[0]).T
-            along = dx * x + dy * y
-            on = (np.abs(dx * y - dy * x) <= 1e-9 * (dx * dx + dy * dy)) & (along > 0) & (along < dx * dx + dy * dy)
-            inner = joints[on][np.argsort(along[on], kind="stable")]
-        parts += [inner, own[1:]]
-        kinds += [1] * len(inner) + [b - a]
-    return np.concatenate(parts)[None], np.array(kinds, dtype=np.int64)
-
-
 def without_area(points: FloatArray, starts: IntArray) -> BoolArray:
     """(C,) which control polygons, that begin at (C + 1,) in points (N, 2), have no area but for rounding errors."""
     after = np.arange(1, len(points) + 1)
     after[starts[1:] - 1] = starts[:-1]
-    with np.errstate(all="ignore"):  # as above
+    with np.errstate(all="ignore"):  # coordinates that are not finite are refused later
         (x, y), (u, v) = points.T, points[after].T
         products = x * v - u * y
         areas, sums = (np.add.reduceat(each, starts[:-1]) for each in (products, np.abs(products)))

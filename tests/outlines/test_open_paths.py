@@ -191,12 +191,12 @@ def test_strokes_there_and_back_are_recognised(tmp_path: Path, flavour: str) -> 
     assert not are_open(font.outline("S").arrays).any()
 
 
-def test_a_contour_without_area_that_retraces_nothing_is_no_path(tmp_path: Path) -> None:
-    eight = [(0, 0), (400, 400), (400, 0), (0, 400)]
-    speck = [(700, 700), (705, 700)]
-    outline = stick_font(tmp_path / "eight.ttf", {"A": [eight, speck]}).outline("A")
-    assert are_open(outline.arrays).tolist() == [False]
-    assert outline.notes == ("contour 1 left out: it encloses nothing",)
+def test_beside_ink_what_retraces_itself_is_left_out_as_no_program_shows_it(tmp_path: Path) -> None:
+    eight, back = [(0, 0), (400, 400), (400, 0), (0, 400)], [(0, 0), (200, 700), (400, 0), (200, 700)]
+    font = stick_font(tmp_path / "left.ttf", {"A": [eight], "B": [SQUARE, back]})
+    assert are_open(font.outline("A").arrays).tolist() == [False]
+    assert are_open(font.outline("B").arrays).tolist() == [False]
+    assert font.outline("B").notes == ("contour 1 left out: it encloses nothing",)
 
 
 def test_paths_have_the_way_there_and_a_line_back(arch: Outline) -> None:

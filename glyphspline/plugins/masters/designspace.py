@@ -99,7 +99,7 @@ class Designspace(EditableSource):
 
     def _outline(self, head: Head) -> Outline:
         """The glyph at the location, by the pen of all readers: it drops what has no length there."""
-        masters, pen = self._masters(head), ContourPen(strokes=True)
+        masters, pen = self._masters(head), ContourPen(opens=True)
         instance = masters.instance(self.location)
         for contour, repeats in zip(instance.contours, masters.repeats_of, strict=False):
             pen.contour(contour.points[None], contour.degrees, repeats)
@@ -134,7 +134,7 @@ class Designspace(EditableSource):
         regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
         found = replace(own, regions=stacked(distinct_regions(regions), len(self.axes)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
-        pen = ContourPen(masters=len(found), strokes=True)
+        pen = ContourPen(masters=len(found), opens=True)
         notes: list[str] = []
         for k, part in enumerate(drawn[0][1]):
             points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)

@@ -27,7 +27,7 @@ from ...outlines.open_paths import without_area
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...outlines.segments import keep_lasting
 from ...types import BoolArray, FloatArray, Head, IntArray
-from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, notes_of
+from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, drawn_by, notes_of
 from ..source import OutlineOrError, attempt
 from .routes import Face
 
@@ -200,31 +200,29 @@ def _contours(
     return points, degrees, offsets, starts, repeats[:m], left_out, before, unusual, snapped
 
 
-def _have_no_area(points: FloatArray, starts: IntArray, before: IntArray) -> BoolArray:
-    """(k,) whether a glyph has a contour that encloses nothing, left out or not: it may be a stroke, there and back.
+def _may_be_strokes(points: FloatArray, starts: IntArray, before: IntArray) -> BoolArray:
+    """(k,) whether a glyph has a contour without area, or nothing but contours that were left out.
 
     Args:
         points, starts, before: of :func:`_contours`.
     """
-    glyphs = np.repeat(np.arange(len(before) - 1), np.diff(before[:, 0]))
-    found: BoolArray = np.diff(before[:, 3]) > 0
+    counts, _, _, left_out = np.diff(before, axis=0).T
+    found: BoolArray = (counts == 0) & (left_out > 0)
+    glyphs = np.repeat(np.arange(len(counts)), counts)
     if len(glyphs):
         first, end = starts[np.arange(len(glyphs)) + glyphs] + before[glyphs, 2], before[-1, 2]
         found[glyphs[without_area(points[:end], np.append(first, end))]] = True
     return found
 
 
-def _by_pen(operations: FloatArray) -> ContourPen:
-    """A glyph's drawing operations once more, by the pen that knows strokes."""
-    pen, at = ContourPen(strokes=True), 0
-    draw = pen.moveTo, pen.lineTo, pen.qCurveTo, pen.curveTo
+def _replay(operations: FloatArray, pen: ContourPen) -> None:
+    """Draw a glyph's operations once more."""
+    draw, at = (pen.moveTo, pen.lineTo, pen.qCurveTo, pen.curveTo), 0
     while at < len(operations):
         kind = int(operations[at])
         end = at + 1 + 2 * max(kind, 1)
         draw[kind](*map(tuple, operations[at + 1 : end].reshape(-1, 2).tolist()))
         at = end
-    pen.finish()
-    return pen
 
 
 @compiled
@@ -324,8 +322,8 @@ class BulkReader:
                 points, degrees, offsets, starts, repeats, left_out, before, unusual, snapped = _contours(
                     self._buffer, places, expected
                 )
-                flat = np.flatnonzero(_have_no_area(points, starts, before) & ~unusual).tolist()
-                again = {g: _by_pen(self._buffer[places[g] : places[g + 1]]) for g in flat}
+                flat = np.flatnonzero(_may_be_strokes(points, starts, before) & ~unusual).tolist()
+                again = {g: drawn_by(partial(_replay, self._buffer[places[g] : places[g + 1]])) for g in flat}
             glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
             for g, (head, odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
                 if odd:
