@@ -188,7 +188,7 @@ def _directed(
     what, other = np.where(covered, COVERED, DIRECTION), np.where(covered, within, -1)
     empty = white.all(axis=1) & (own != 0).any(axis=1)
     lost = np.bincount(contours, lengths * (empty | (bounds & ~outside)), count)
-    lost[(of_outer < least) & (np.bincount(contours, ~empty, count) > 0)] = 0.0
+    lost[(of_outer < least) & (np.bincount(contours, ~empty & (lengths > 0.0), count) > 0)] = 0.0
     return np.concatenate([
         rows(what[which], which, 0.0, np.abs(areas[which]), other=other[which]),
         _cancelling(areas, met, np.where(lost >= least, lost, 0.0)),
