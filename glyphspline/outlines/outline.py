@@ -61,6 +61,8 @@ class Contour:
     @cached_property
     def is_open(self) -> bool:
         """Whether it is an open path, along which it goes and then back."""
+        if len(self) % 2 or not len(self) or (self.points[1] != self.points[-1]).any():
+            return False  # of most contours, at once
         return bool(are_open(end_to_end([(self.points, self.degrees)]))[0])
 
     def __len__(self) -> int:

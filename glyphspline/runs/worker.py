@@ -172,6 +172,7 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
         shown = {
             "source": both_ways(source, result.outline.arrays, precision),
             "result": both_ways(glyph.path, result.arrays.curves, precision), "polygon": polygon, "control": control,
+            **({"strokes": "open"} if glyph.path.strokes else {}),
         }  # fmt: skip
         return glyph_text(shown, files, glyph.measures or (), glyph.axes)
     path = {"path": glyph.path}
