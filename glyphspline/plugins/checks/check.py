@@ -13,19 +13,16 @@ from ...outlines.open_paths import are_open
 from ...outlines.outline import Outline
 from .finding import Finding, Measured, findings
 
-HEIGHTS = (0.0,)
-"""Heights at which points are aligned where nothing is known of the font."""
-
 
 def check(
-    outline: Outline, thresholds: Thresholds = THRESHOLDS, *, outer: int = 0, heights: Sequence[float] = HEIGHTS
+    outline: Outline, thresholds: Thresholds = THRESHOLDS, *, outer: int = 0, heights: Sequence[float] = ()
 ) -> list[Finding]:
     """What may be wrong with an outline, the worst of each kind first, kinks before all. Nothing is fitted.
 
     Args:
         outline: as its font has it; see :meth:`glyphspline.Font.outline`. thresholds: from which values on it counts.
         outer: direction of outer contours, the font's ``outer``; 0 for that of most of the glyph's.
-        heights: at which points are aligned, such as the font's ``x_height`` and ``cap_height``.
+        heights: at which points are aligned, as 0, the font's ``x_height`` and ``cap_height``.
 
     Example:
         >>> import glyphspline as gs
@@ -37,7 +34,7 @@ def check(
 
 def check_many(
     outlines: Sequence[Outline], thresholds: Thresholds = THRESHOLDS, *, outer: int = 0,
-    heights: Sequence[float] = HEIGHTS,
+    heights: Sequence[float] = (),
 ) -> list[list[Finding]]:  # fmt: skip
     """As :func:`check`, of many outlines of one font at once; the result of one does not depend on the others."""
     if not outlines:
@@ -49,7 +46,7 @@ def check_many(
 
 def measured(
     glyphs: Sequence[Any], thresholds: Thresholds, units_per_em: float, outer: int = 0,
-    heights: Sequence[float] = HEIGHTS,
+    heights: Sequence[float] = (),
 ) -> Measured:  # fmt: skip
     """Measure :class:`.Contours` of glyphs of one em; ``outer`` as in :attr:`.Source.outer`, ``heights`` as above.
 

@@ -132,10 +132,11 @@ class AxesJob(CheckJob):
         return _item(masters, sum(map(len, masters.contours)))
 
     def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[Any]]:
-        """As for a font where it is open, at the worst place of each finding."""
+        """As for a font where it is open, at the worst place of each finding; heights but the baseline move."""
         found: tuple[Measured, Sequence[Any]] = service("on_axes")(
-            glyphs, dict(self.place[2]), self.axes, self.steps, self.thresholds, self.outer
-        )
+            glyphs, dict(self.place[2]), self.axes, self.steps, self.thresholds, self.outer,
+            heights=self.heights[:1],
+        )  # fmt: skip
         return found
 
 
