@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from types import SimpleNamespace
@@ -19,13 +20,14 @@ from fontTools.ufoLib import UFOWriter
 import glyphspline as gs
 from glyphspline.outlines.open_paths import are_open, paths, there_and_back
 from glyphspline.outlines.outline import Contour, Outline
+from glyphspline.readers import Source
 from glyphspline.types import FloatArray
 
 ARCH = [("moveTo", (0, 0)), ("curveTo", (0, 300), (200, 700), (400, 700)), ("lineTo", (600, 700))]
 SQUARE = [(0, 0), (0, 400), (400, 400), (400, 0)]
 
 
-def ufo(path: Path, glyphs: dict[str, list[list[tuple[str, Any, Any]]]]) -> gs.Source:
+def ufo(path: Path, glyphs: Mapping[str, Sequence[Sequence[tuple[str | None, int, int]]]]) -> Source:
     """A UFO of glyphs by name, each of contours of points: type, x, y."""
     writer = UFOWriter(path)
     writer.writeInfo(SimpleNamespace(unitsPerEm=1000, ascender=800, descender=-200, familyName="Open", styleName="One"))
@@ -49,7 +51,7 @@ def ufo(path: Path, glyphs: dict[str, list[list[tuple[str, Any, Any]]]]) -> gs.S
     return gs.open_source(path)
 
 
-def stick_font(path: Path, glyphs: dict[str, list[list[tuple[float, float]]]], flavour: str = "ttf") -> gs.Source:
+def stick_font(path: Path, glyphs: Mapping[str, Sequence[Sequence[tuple[int, int]]]], flavour: str = "ttf") -> Source:
     """A font of glyphs of lines by name, each of closed contours of points."""
     builder, order = FontBuilder(1000, isTTF=flavour == "ttf"), [".notdef", *glyphs]
     builder.setupGlyphOrder(order)
@@ -103,6 +105,7 @@ def test_a_fit_is_within_the_tolerance_both_ways_and_keeps_the_ends(arch: Outlin
     glyph = gs.convert(arch, gs.Options(tolerance=1.0, **how))
     (contour,) = glyph.contours
     both = contour.curve.rounded(glyph.options.precision).drawn(), arch.contours[0].drawn()
+    assert contour.measures.deviation_bound is not None
     bound = contour.measures.deviation_bound + 0.02  # for points 0.2 apart
     assert all(farthest(dense(a), dense(b, 4000)) <= bound for a, b in (both, both[::-1]))
     source = dense(both[1])
@@ -154,8 +157,14 @@ def test_closed_contours_beside_open_ones_are_fitted_as_if_alone(arch: Outline) 
 
 
 def test_open_contours_of_a_ufo_stay_open(tmp_path: Path) -> None:
-    path = [("move", 0, 0), (None, 0, 300), (None, 200, 700), ("curve", 400, 700), ("line", 600, 700)]
-    square = [("line", x, y) for x, y in SQUARE]
+    path: list[tuple[str | None, int, int]] = [
+        ("move", 0, 0),
+        (None, 0, 300),
+        (None, 200, 700),
+        ("curve", 400, 700),
+        ("line", 600, 700),
+    ]
+    square: list[tuple[str | None, int, int]] = [("line", x, y) for x, y in SQUARE]
     source = ufo(tmp_path / "open.ufo", {"A": [path], "B": [square, [("move", 9, 9)], path]})
     assert [are_open(source.outline(name).arrays).tolist() for name in "AB"] == [[True], [False, True]]
     pen = RecordingPen()

@@ -11,12 +11,18 @@ import glyphspline as gs
 from glyphspline.outlines.open_paths import are_open
 from tests.outlines.test_open_paths import SQUARE, stick_font, ufo
 
-PATH = [("move", 0, 0), (None, 0, 300), (None, 200, 700), ("curve", 400, 700), ("line", 600, 700)]
+PATH: list[tuple[str | None, int, int]] = [
+    ("move", 0, 0),
+    (None, 0, 300),
+    (None, 200, 700),
+    ("curve", 400, 700),
+    ("line", 600, 700),
+]
 
 
 @pytest.mark.parametrize("name", ["otf", "ttf"])
 def test_fonts_refuse_open_paths_by_name_and_other_glyphs_go_on(tmp_path: Path, name: str) -> None:
-    square = [("line", x, y) for x, y in SQUARE]
+    square: list[tuple[str | None, int, int]] = [("line", x, y) for x, y in SQUARE]
     source = ufo(tmp_path / "a.ufo", {"A": [square, PATH], "B": [square]})
     summary = gs.refit(source, tmp_path / "out", formats=(name,))
     lines = map(json.loads, (tmp_path / "out" / "manifest.jsonl").read_text().splitlines())
@@ -28,7 +34,14 @@ def test_fonts_refuse_open_paths_by_name_and_other_glyphs_go_on(tmp_path: Path, 
 
 
 def test_a_source_keeps_open_contours_as_they_are(tmp_path: Path) -> None:
-    wave = [("curve", 0, 0), (None, 0, 100), (None, 90, 200), ("curve", 200, 201), (None, 300, 200), (None, 400, 100)]
+    wave: list[tuple[str | None, int, int]] = [
+        ("curve", 0, 0),
+        (None, 0, 100),
+        (None, 90, 200),
+        ("curve", 200, 201),
+        (None, 300, 200),
+        (None, 400, 100),
+    ]
     source = ufo(tmp_path / "a.ufo", {"A": [PATH, [*wave, ("curve", 400, 0)]]})
     before = (tmp_path / "a.ufo" / "glyphs" / "A_.glif").read_text()
     summary = gs.refit(source, in_place=True, options=gs.Options(tolerance=30.0, corners="sharp", continuity="g2"))
