@@ -65,6 +65,7 @@ def font_lines(facts: Mapping[str, Any]) -> Iterator[str]:
             ("doubled_points", "points that are there more than once"),
             ("leftover_points", "points on a line between two others"),
             ("contours_left_out", "contours that enclose nothing: of one or two points, or on a line"),
+            ("open_contours", "open paths, or strokes of a single-line font"),
         ):
             if key in font:
                 yield f"  {font[key]:,} {what}"

@@ -12,10 +12,11 @@ import numpy as np
 from .. import hooks
 from ..errors import GlyphsplineError
 from ..outlines.contour_arrays import ContourArrays, joined, offsets_of
+from ..outlines.open_paths import are_open, by_kind
 from ..outlines.outline import Outline
-from ..types import BoolArray, IntArray, rounded_up
+from ..types import BoolArray, IntArray, counted, rounded_up
 from .options import Options
-from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns, as_glyphs
+from .results import NOTHING, ContourResults, ConvertedContours, GlyphResult, MeasureColumns, as_glyphs, assembled
 
 DEFAULTS = Options()
 
@@ -34,7 +35,7 @@ def convert_many(
     """Interpolate every contour of every glyph on its own; the results do not depend on the batch.
 
     Contours with fewer than three distinct points enclose nothing and draw nothing; they are left out, and
-    ``notes`` of the result says so.
+    ``notes`` of the result says so. Open paths stay open, with their corners in every mode.
 
     Args:
         outlines: of glyphs. options: for all of them.
@@ -137,15 +138,18 @@ def _convert_alike(
     tolerance = options.tolerance_for(em)
     given = joined([outline.arrays for outline in glyphs])
     before = offsets_of([len(outline.contours) for outline in glyphs])
-    kept, owners = enclosing(given), np.repeat(np.arange(len(glyphs)), np.diff(before))
+    opened = are_open(given)
+    kept, owners = enclosing(given) | opened, np.repeat(np.arange(len(glyphs)), np.diff(before))
     for index in np.flatnonzero(~kept).tolist():
         k = owners[index]
         notes[k].append(f"contour {index - before[k]} has fewer than three distinct points and is left out")
+    for k in np.unique(owners[opened]).tolist():
+        notes[k].append(f"{counted(int(opened[before[k] : before[k + 1]].sum()), 'open path')}, drawn as strokes")
     which = np.flatnonzero(kept)
     try:
         ends = np.searchsorted(which, before)
         contours = given.chosen(which.tolist())
-        found = _convert_contours(contours, ends, options, max(tolerance - reserve, tolerance / 2), em)
+        found = _convert_contours(contours, opened[which], ends, options, max(tolerance - reserve, tolerance / 2), em)
     except GlyphsplineError as error:
         k = 0
         if error.contour is not None:
@@ -168,13 +172,37 @@ def _convert_alike(
 
 
 def _convert_contours(
-    contours: ContourArrays, glyphs: IntArray, options: Options, tolerance: float, em: float
+    contours: ContourArrays, opened: BoolArray, glyphs: IntArray, options: Options, tolerance: float, em: float
 ) -> ConvertedContours:
-    """Fit all contours in the mode of the options; an error's ``contour`` is the index.
+    """Fit all contours in the mode of the options, those that are ``opened`` as paths; an error's ``contour`` is the
+    index.
 
     Args:
         glyphs: (G + 1,) where the contours of each glyph begin.
     """
+    if not opened.any():
+        return _convert_closed(contours, glyphs, options, tolerance, em)
+    from .open_paths import convert_open  # imports the compiler
+
+    chosen: dict[int, tuple[ConvertedContours, int]] = {}
+    for which, ends in by_kind(opened, glyphs):
+        own = contours.chosen(which)
+        try:
+            if len(which) and opened[which[0]]:
+                found = convert_open(own, options, tolerance, em)
+            else:
+                found = _convert_closed(own, ends, options, tolerance, em)
+        except GlyphsplineError as error:
+            error.contour = None if error.contour is None else int(which[error.contour])
+            raise
+        chosen |= {c: (found, k) for k, c in enumerate(which.tolist())}
+    return assembled([chosen[c] for c in range(len(chosen))])
+
+
+def _convert_closed(
+    contours: ContourArrays, glyphs: IntArray, options: Options, tolerance: float, em: float
+) -> ConvertedContours:
+    """Fit closed contours in the mode of the options."""
     # Imported here because these import the compiler, which the package itself does not need.
     if contours.num_contours == 0:
         return NOTHING
@@ -227,10 +255,10 @@ def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -
     for (contour, within), (_, bound) in zip(column("within_tolerance"), column("deviation_bound"), strict=True):
         if within is False:
             yield f"{contour} is certified to {rounded_up(bound, 3):.3g} units, not to {tolerance:g}"
-    for contour, crossings in column("new_crossings"):
+    for (contour, crossings), (_, collapsed) in zip(column("new_crossings"), column("collapsed"), strict=True):
         if crossings:
             yield f"{contour} crosses itself or others, {crossings} times more than its source"
-        elif crossings is None:
+        elif crossings is None and collapsed is not None:  # of open paths neither is known
             yield f"crossings of {contour} are not counted: too many strands lie on each other"
     for contour, collapsed in column("collapsed"):
         if collapsed:

@@ -22,6 +22,7 @@ from ..outlines.contour_arrays import (
     offsets_of,
     polylines,
 )
+from ..outlines.open_paths import are_open, paths
 from ..outlines.outline import Contour, Contours, FontMetrics, Outline
 from ..types import FloatArray, IntArray, Views, counted, rounded_up
 from .options import Options
@@ -161,7 +162,7 @@ class ContourResult:
 
     @cached_property
     def spline(self) -> Spline | None:
-        """The contour as one closed spline, lines included; None if it has no length.
+        """The contour as one closed spline, lines included, or as an open one; None if it has no length.
 
         In "smooth" it is the interpolation's. With corners, knots are triple at the ends of arcs and of straight lines,
         where the curve is in its control points; between them it is C2. Curves are those of ``curve``, up to rounding.
@@ -178,7 +179,7 @@ class ConvertedContours:
 
     Attributes:
         source: the contours. curves: the results as exact Béziers, before rounding.
-        polygons: C polygons, whose vertices the curves pass through.
+        polygons: C polygons, whose vertices the curves pass through; those of open paths are open.
         arcs: A interpolations. controls: their A control polygons.
         arc_offsets: (C + 1,) where the arcs of each contour begin in ``arcs``, and A.
         measures: a column of C values for each measure.
@@ -214,16 +215,20 @@ class ConvertedContours:
         )
 
     def splines(self) -> list[Spline | None]:
-        """One closed spline a contour: :attr:`ContourResult.spline`."""
-        knots, controls = self.whole_splines
-        return [
-            Spline.trusted(controls.points[a:b], knots[a + c : b + c + 1], 3, True) if a < b else None
-            for c, (a, b) in enumerate(pairwise(controls.offsets.tolist()))
-        ]
+        """One spline a contour: :attr:`ContourResult.spline`."""
+        opened = are_open(self.curves)
+        knots, controls = whole_splines(paths(self.curves, opened), self.arcs, self.controls, self.arc_offsets)
+        found: list[Spline | None] = []
+        for c, (a, b) in enumerate(pairwise(controls.offsets.tolist())):
+            points, own = controls.points[a:b], knots[a + c : b + c + 1]
+            if opened[c]:  # without the line back, which has the last two control points
+                points, own = points[:-2], own[1:-4]
+            found.append(Spline.trusted(points, own, 3, not opened[c]) if a < b else None)
+        return found
 
     @property
     def whole_splines(self) -> tuple[FloatArray, Polylines]:
-        """Knots and control points of these splines end to end; see :func:`.whole_splines`."""
+        """Knots and control points of closed splines, of open paths there and back: see :func:`.whole_splines`."""
         return whole_splines(self.curves, self.arcs, self.controls, self.arc_offsets)
 
     def contour_results(self) -> list[ContourResult]:
@@ -296,7 +301,7 @@ def _end_to_end(results: Sequence[ContourResult]) -> ConvertedContours:
     return ConvertedContours(
         Contours(result.source for result in results).arrays,
         Contours(result.curve for result in results).arrays,
-        polylines([result.polygon for result in results], [True] * len(results)),
+        polylines([result.polygon for result in results], [not result.curve.is_open for result in results]),
         arcs,
         polylines([spline.control_points for spline in splines], [spline.closed for spline in splines]),
         offsets_of([len(result.interpolations) for result in results]),

@@ -13,6 +13,7 @@ import numpy as np
 from ..curves.bezier import evaluate
 from ..types import FloatArray, IntArray, Views, counted
 from .contour_arrays import ContourArrays, end_to_end
+from .open_paths import are_open
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +25,7 @@ class Contour:
         degrees: (m,) the degree of each segment: 1 (line), 2 or 3, so that ``N == degrees.sum()``.
 
     Segment j has the ``degrees[j] + 1`` points that begin at ``offsets[j]``; the last segment ends on
-    ``points[0]``.
+    ``points[0]``. An open path is a contour that goes along it and back: see :mod:`.open_paths`.
     """
 
     points: FloatArray
@@ -57,6 +58,13 @@ class Contour:
         """(m,) first index in ``points`` of each segment."""
         return np.cumsum(self.degrees) - self.degrees
 
+    @cached_property
+    def is_open(self) -> bool:
+        """Whether it is an open path, along which it goes and then back."""
+        if len(self) % 2 or not len(self) or (self.points[1] != self.points[-1]).any():
+            return False  # of most contours, at once
+        return bool(are_open(end_to_end([(self.points, self.degrees)]))[0])
+
     def __len__(self) -> int:
         return len(self.degrees)
 
@@ -69,6 +77,11 @@ class Contour:
         closed = np.concatenate([self.points, self.points[:1]])
         for offset, degree in zip(self.offsets, self.degrees, strict=True):
             yield closed[offset : offset + degree + 1]
+
+    def drawn(self) -> list[FloatArray]:
+        """The segments as they are drawn: of an open path those of the way there."""
+        segments = list(self.segments())
+        return segments[: len(segments) // 2] if self.is_open else segments
 
     def cubics(self) -> FloatArray:
         """(m, 4, 2) all segments as cubic Béziers, by exact degree elevation."""
@@ -89,15 +102,22 @@ class Contour:
         """The contour in the opposite direction from the same start point."""
         return Contour(np.roll(self.points[::-1], 1, axis=0), self.degrees[::-1])
 
-    def draw(self, pen: Any, closing: bool = True) -> None:
-        """Draw with any fontTools segment pen; ``closing``: with a last line, which ``closePath`` implies."""
+    def draw(self, pen: Any, closing: bool = True, stays_open: bool = True) -> None:
+        """Draw with any fontTools segment pen.
+
+        Args:
+            closing: with a last line, which ``closePath`` implies.
+            stays_open: an open path ends with ``endPath``; else it is drawn there and back, as in fonts.
+        """
         closed = [tuple(point) for point in np.concatenate([self.points, self.points[:1]]).tolist()]
         pen.moveTo(closed[0])
         drawn = len(self) - (not closing and len(self) > 1 and self.degrees[-1] == 1)
+        opens = stays_open and self.is_open
+        drawn = len(self) // 2 if opens else drawn
         for offset, degree in zip(self.offsets[:drawn].tolist(), self.degrees[:drawn].tolist(), strict=True):
             to = closed[offset + 1 : offset + degree + 1]
             (pen.lineTo, pen.qCurveTo, pen.curveTo)[degree - 1](*to)
-        pen.closePath()
+        (pen.endPath if opens else pen.closePath)()
 
 
 class Contours(Views[Contour]):

@@ -12,15 +12,16 @@ from ..curves.integrals import area
 from ..curves.overshoot import chords
 from ..extras import need
 from ..types import FloatArray
-from .contour_arrays import offsets_of
-from .outline import Contour, Outline
+from .contour_arrays import joined, offsets_of
+from .open_paths import are_open
+from .outline import Contour, Contours, Outline
 
 SCANLINES = 1000
 """Scan lines on which the inked area of a glyph is measured."""
 
 
 def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
-    """The outline with its contours united, and None; or the unchanged outline and a note why that failed.
+    """The outline with its closed contours united, and None; or the unchanged outline and a note why that failed.
 
     Raises:
         GlyphsplineError: skia-pathops is not installed.
@@ -28,6 +29,10 @@ def remove_overlaps(outline: Outline) -> tuple[Outline, str | None]:
     pathops = need("overlaps")
     if not outline.contours:
         return outline, None
+    if (opened := are_open(outline.arrays)).any():
+        closed, strokes = (outline.arrays.chosen(np.flatnonzero(which)) for which in (~opened, opened))
+        filled, note = remove_overlaps(replace(outline, contours=Contours(closed)))
+        return replace(filled, contours=Contours(joined([filled.arrays, strokes]))), note
     areas = [area(contour.cubics()) for contour in outline.contours]
     clockwise = max(areas, key=abs) < 0  # the contour of the largest area is not a hole
     try:

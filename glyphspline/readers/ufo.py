@@ -19,7 +19,7 @@ from fontTools.ufoLib.glifLib import GlyphSet
 from ..errors import FontError
 from ..outlines.outline import FontMetrics, Outline
 from ..types import Head
-from .pens import ContourPen
+from .pens import ContourPen, drawn_by
 from .source import Source, first_claims, opening, parsed
 
 ORDER_KEY, SKIP_KEY = "public.glyphOrder", "public.skipExportGlyphs"
@@ -126,10 +126,8 @@ class Ufo(EditableSource):
         return Outline(*head, float(glyph.width), pen.contours, self.metrics, pen.notes, pen.snapped)
 
     def _drawn(self, name: str) -> tuple[ContourPen, _Glyph]:
-        pen, glyph = ContourPen(self.default_layer, name), self.default_layer[name]
-        glyph.draw(pen)
-        pen.finish()
-        return pen, glyph
+        glyph = self.default_layer[name]
+        return drawn_by(glyph.draw, glyph_set=self.default_layer, glyph_name=name, opens=True), glyph
 
     def drawings(self, name: str) -> list[Drawing]:
         """See :meth:`EditableSource.drawings`: there is one."""

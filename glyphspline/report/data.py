@@ -70,7 +70,8 @@ def glyph_text(
     """A glyph's data file.
 
     Args:
-        drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" if unknown.
+        drawing: path data of ``source``, ``result``, ``polygon`` and ``control``; "" if unknown. ``strokes``, if there
+            are open paths, which go there and back.
         files: by format, relative to the run's folder.
         contours: the measures of its contours; what is None is left out.
         masters: of a glyph in all masters, as the page mixes it.

@@ -19,7 +19,7 @@
     const mapped = on.has("comb") || on.has("colour") || on.has("source-comb"), source = mapped ? GS.contours(drawing.source) : [];
     if (on.has("source-comb")) group.append(GS.comb(source, em, run.scale, { name: "source-comb" }));
     if (drawing.result) {
-      group.append(GS.svg("path", { class: "result", d: drawing.result }));
+      group.append(GS.svg("path", { class: drawing.strokes ? "result strokes" : "result", d: drawing.result }));
       if (on.has("comb") || on.has("colour")) {
         const contours = GS.contours(drawing.result);
         // Only a smooth result turns about a corner: elsewhere a corner is a point between two curvatures.

@@ -60,11 +60,14 @@ class ConvertJob(Output, Job[Task, list[Done]]):
     """Segments and vertices converted at once: some 40 glyphs of a CJK face."""
 
     def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
-        """Outlines; one that is too large is an error."""
+        """Outlines; one that is too large, or that a file of the run cannot have, is an error."""
         from .worker import items
 
         (source,) = sources(self.place)
-        return items(source.read([task.head for task in tasks]), self.spec.options, self.spec.limits)
+        found = source.read([task.head for task in tasks])
+        for whole in self.spec.whole:
+            found = [each if isinstance(each, Exception) else whole.refused(each) or each for each in found]
+        return items(found, self.spec.options, self.spec.limits)
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """Convert outlines and write their files."""

@@ -11,12 +11,15 @@ from typing import Any
 from ..errors import GlyphsplineError
 from ..extras import has
 from ..outlines.contour_arrays import joined
+from ..outlines.open_paths import are_open
 from ..outlines.outline import Outline
 from ..readers.pens import NO_AREA
 from .engine import Item, Job, Observer, run
 from .schedule import Place, sources
 
-COUNTS = ("contours", "segments", "doubled_points", "leftover_points", "contours_left_out", "broken_glyphs")
+COUNTS = (
+    "contours", "open_contours", "segments", "doubled_points", "leftover_points", "contours_left_out", "broken_glyphs"
+)  # fmt: skip
 """Facts that are numbers."""
 
 
@@ -49,6 +52,7 @@ class FactsJob(Job[int, dict[str, Any]]):
         left_out = [sum(NO_AREA in note for note in outline.notes) for outline in contents]
         return {
             "contours": sum(len(outline.contours) for outline in contents),
+            "open_contours": sum(int(are_open(outline.arrays).sum()) for outline in contents),
             "segments": sum(len(outline.arrays.degrees) for outline in contents),
             "doubled_points": sum(int(outline.repeats.sum()) for outline in contents if outline.repeats is not None),
             "leftover_points": leftovers(contents),
@@ -110,7 +114,8 @@ def overlaps(outline: Outline) -> bool:
     if not outline.contours:
         return False
     path = pathops.Path()
-    outline.draw(path.getPen())
+    for contour in outline.contours:
+        contour.draw(path.getPen(), stays_open=False)
     try:
         path.simplify(fix_winding=True)
     except pathops.PathOpsError:

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from .. import hooks
 
 if TYPE_CHECKING:
+    from ..errors import GlyphsplineError
     from ..fitting.options import Options
     from ..fitting.results import GlyphResult
+    from ..outlines.outline import Outline
     from ..readers import Source
 
 
@@ -31,6 +33,10 @@ class WholeFormat(ABC):
 
     def check(self, source: Source) -> None:  # noqa: B027 -- most sources can
         """Raise a GlyphsplineError before the run if a source cannot become such a file."""
+
+    def refused(self, outline: Outline) -> GlyphsplineError | None:
+        """Why a glyph cannot be in such a file; None of most."""
+        return None
 
     def path(self, source: Source, out: Path) -> Path:
         """The file in a run's folder."""

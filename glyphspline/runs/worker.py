@@ -21,7 +21,7 @@ from ..report.data import DECIMALS, FULL, encoded, glyph_text, plain, row_of
 from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
 from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data
-from ..writers.svg.path_data import PathData, curves_data
+from ..writers.svg.path_data import PathData, both_ways, curves_data
 from .engine import Item
 from .folder import Done, Output, Task, done
 from .result_text import to_text
@@ -175,11 +175,18 @@ def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str 
         if name == POLYGON:
             return polygon_document(result, source, polygons)
         polygon, control = (part.text for part in polygons)
-        curve = (glyph.finer or glyph.path).text
-        shown = {"source": source.text, "result": curve, "polygon": polygon, "control": control}
+        precision = result.options.precision
+        finer = precision + (glyph.finer is not None)
+        shown = {
+            "source": both_ways(source, result.outline.arrays, precision),
+            "result": both_ways(glyph.finer or glyph.path, result.arrays.curves, finer),
+            "polygon": polygon,
+            "control": control,
+            **({"strokes": "open"} if glyph.path.strokes else {}),
+        }
         return glyph_text(shown, files, glyph.measures or (), glyph.axes)
-    path, box = {"path": glyph.path}, {"ink": glyph.path.box}
-    shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": box, "pdf": box}
+    path = {"path": glyph.path}
+    shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": path, "pdf": path}
     known = shared.get(name, {})
     if name in MAPS:
         em = result.outline.metrics.units_per_em

@@ -65,11 +65,11 @@ def head(glyph: GlyphResult, settings: Settings) -> dict[str, Any]:
 def _contour(contour: ContourResult, scale: float) -> dict[str, Any]:
     measures = {name: finite(value) for name, value in asdict(contour.measures).items()}
     return {
-        "source": [(segment * scale).tolist() for segment in contour.source.segments()],
+        "source": [(segment * scale).tolist() for segment in contour.source.drawn()],
         "points": (contour.polygon * scale).tolist(),
         "spline": None if contour.spline is None else _spline(contour.spline, scale),
         "splines": [_spline(each.spline, scale) for each in contour.interpolations],
-        "beziers": [(segment * scale).tolist() for segment in contour.curve.segments()],
+        "beziers": [(segment * scale).tolist() for segment in contour.curve.drawn()],
         "measures": measures,
     }
 

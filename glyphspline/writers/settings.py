@@ -114,6 +114,12 @@ class Appearance:
             return width * INCHES[unit] / (scale[0] * INCHES[scale[1]])
         return width * units_per_em if unit else width
 
+    def open_line(self, units_per_em: float, height: float = 1.0) -> tuple[str, float]:
+        """Colour and width of open paths, likewise: of the line along the outline, or else the ink's and 1/40 em."""
+        if self.stroke != "none":
+            return self.stroke, self.line(units_per_em, height)
+        return CURRENT if self.fill == "none" else self.fill, units_per_em / 40
+
     def inches(self, height: float, units_per_em: float, default: float) -> float:
         """Height in inches of a drawing, by its height in font units; ``default`` without ``size``."""
         found = self.scale(height, units_per_em)

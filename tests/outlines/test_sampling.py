@@ -112,7 +112,7 @@ def test_step_and_count_are_measured_only_on_request() -> None:
 
 def test_contours_that_enclose_nothing_are_left_out_with_a_note() -> None:
     dot = gs.Contour(np.array([[5.0, 5.0]]), np.array([1]))
-    hair = gs.Contour(np.array([[0.0, 0.0], [5.0, 5.0]]), np.array([1, 1]))
+    hair = gs.Contour(np.array([[0.0, 0.0], [5.0, 5.0], [0.0, 0.0]]), np.array([1, 1, 1]))
     result = gs.convert(gs.Outline("x", contours=(dot, circle_contour(), hair)), gs.Options(count=8))
     assert len(result.contours) == 1
     assert len(result.notes) == 2

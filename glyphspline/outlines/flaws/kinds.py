@@ -15,8 +15,8 @@ LEVELS: tuple[Level, ...] = ("INFO", "WARN")
 
 (
     KINK, JUMP, LUMP, INFLECTION, STRAIGHT, SLANTED, EXTREMUM, SHORT, HANDLES, OVERLAP, DIRECTION, DOUBLED, CROSSING,
-    REPEATED, LEFTOVER, SPIKE, RETRACTED, UNLEVEL, TURN, COVERED,
-) = range(20)  # fmt: skip
+    REPEATED, LEFTOVER, SPIKE, RETRACTED, UNLEVEL, TURN, COVERED, OPEN, MISS, MIXED, CANCELLING,
+) = range(24)  # fmt: skip
 """Numbers of the kinds in tables of findings: their places in ``KINDS``."""
 
 
@@ -57,6 +57,10 @@ KINDS = (
     Kind("unlevel", "INFO", "units", "handles at an extreme point {value} off level"),
     Kind("turn", "INFO", "°", "turns by {value}, of two lines or beside a short segment or handle"),
     Kind("covered", "INFO", "units²", "draws nothing, with ink on both sides: runs like {other} around it"),
+    Kind("open contour", "INFO", "segments", "is an open path of {value}: fonts fill it or draw nothing"),
+    Kind("alignment miss", "INFO", "units", "{value} off the height {detail:g}"),
+    Kind("mixed outlines", "INFO", "segments", "quadratics and cubics in one glyph: {value} of the other kind"),
+    Kind("cancelling component", "INFO", "units", "cancels {other}: white along {value} where they overlap"),
 )
 
 MENDED = ("kink", "jump", "handles", "extremum", "unlevel", "slanted", "repeated", "straight", "short", "direction")

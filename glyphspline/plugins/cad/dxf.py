@@ -9,6 +9,7 @@ What is written, so that all programs read the same curve:
   docs/formats.md says which. Knots have the scale of the drawing.
 - "arcs": each straight line is a LINE, and what is between corners and lines a SPLINE. The entities of a
   contour follow each other, end in the same coordinates, and are a GROUP.
+- An open path is one open SPLINE, clamped at its ends, in the layer of outlines.
 - Spurs are left out, which solid modellers refuse: lines that run back over the line before them.
 - Coordinates are doubles in full, not rounded to ``precision``.
 - No text of the font is in the file, nor a date: the same result has the same bytes.
@@ -29,6 +30,7 @@ from ...curves.bspline import Spline
 from ...errors import require
 from ...extras import need
 from ...fitting.results import GlyphResult
+from ...outlines.open_paths import are_open, paths
 from ...outlines.outline import Contour, Contours
 from ...outlines.polygons import flattened, polygons_of
 from ...types import INCHES, BoolArray, FloatArray
@@ -52,13 +54,13 @@ _metadata = threading.Lock()
 
 Piece = tuple[FloatArray, FloatArray]
 """An entity to be, in font units: control points (n, 2) and knots (n + 4,) of a clamped SPLINE; or the points of a LINE
-or a closed LWPOLYLINE, and no knots."""
+or an LWPOLYLINE, and no knots."""
 
 
 def to_dxf(
     result: GlyphResult, *, size: str | None = None, dxf: DxfKind = "spline", flatness: float | None = None
 ) -> str:
-    """A glyph, or a text, as a DXF drawing (R2000), y up.
+    """A glyph, or a text, as a DXF drawing (R2000), y up; open paths stay open.
 
     Contours are in the layers "outlines" and "holes"; a hole is a contour about which there is ink. The origin of the
     glyph is that of the drawing.
@@ -97,10 +99,12 @@ def write(result: GlyphResult, settings: Settings) -> str:
     unit, scale = settings.unit, float(settings.scale)
     if unit not in UNITS:
         scale, unit = scale * INCHES[unit] / INCHES["mm"], "mm"  # type: ignore[index]
-    curves = Contours(without_spurs(contour.curve) for contour in result.contours).arrays
+    opened = are_open(result.arrays.curves)
+    given = [contour.curve for contour in result.contours]
+    curves = Contours(c if cut else without_spurs(c) for c, cut in zip(given, opened.tolist(), strict=True)).arrays
     if settings.dxf == "polyline":
         flatness = settings.flatness_for(result.outline.metrics.units_per_em)
-        drawn = [[(points, np.empty(0))] for points in polygons_of(flattened(curves, flatness)[0])]
+        drawn = [[(points, np.empty(0))] for points in polygons_of(flattened(paths(curves, opened), flatness)[0])]
     else:
         draw = _arcs if settings.dxf == "arcs" else _whole
         drawn = [draw(spline) if spline else [] for spline in replace(result.arrays, curves=curves).splines()]
@@ -114,7 +118,7 @@ def write(result: GlyphResult, settings: Settings) -> str:
             document.header["$MEASUREMENT"] = int(unit != "in")
             for layer, colour in zip(LAYERS, COLOURS, strict=True):
                 document.layers.add(layer, color=colour)
-            _fill(document, drawn, holes(result), scale, settings.dxf)
+            _fill(document, drawn, holes(result), opened, scale, settings.dxf)
             text = StringIO()
             document.write(text)
         finally:
@@ -122,16 +126,19 @@ def write(result: GlyphResult, settings: Settings) -> str:
     return text.getvalue()
 
 
-def _fill(document: Any, drawn: Sequence[Sequence[Piece]], counters: BoolArray, scale: float, kind: DxfKind) -> None:
+def _fill(
+    document: Any, drawn: Sequence[Sequence[Piece]], counters: BoolArray, opened: BoolArray, scale: float,
+    kind: DxfKind,
+) -> None:  # fmt: skip
     space = document.modelspace()
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    for number, (contour, hole) in enumerate(zip(drawn, counters.tolist(), strict=True), 1):
+    for number, (contour, hole, cut) in enumerate(zip(drawn, counters.tolist(), opened.tolist(), strict=True), 1):
         layer, entities = {"layer": HOLES if hole else OUTLINES}, []
         for control_points, knots in contour:
             points = control_points * scale + 0.0
             low, high = np.minimum(low, points.min(axis=0)), np.maximum(high, points.max(axis=0))
             if kind == "polyline":
-                entities.append(space.add_lwpolyline(points.tolist(), "xy", close=True, dxfattribs=layer))
+                entities.append(space.add_lwpolyline(points.tolist(), "xy", close=not cut, dxfattribs=layer))
             elif not len(knots):
                 entities.append(space.add_line(*points.tolist(), dxfattribs=layer))
             else:
@@ -156,7 +163,7 @@ def holes(result: GlyphResult) -> BoolArray:
     if not curves.num_contours:
         return np.zeros(0, dtype=np.bool_)
     areas = np.array([area(contour.curve.cubics()) for contour in result.contours])
-    return ink_sides(curves) * areas < 0.0
+    return (ink_sides(curves) * areas < 0.0) & ~are_open(curves)
 
 
 def _whole(spline: Spline) -> list[Piece]:

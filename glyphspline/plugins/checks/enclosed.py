@@ -25,7 +25,7 @@ from ...curves.crossings import meetings
 from ...curves.cubics import jet, length
 from ...curves.integrals import area, integrals
 from ...outlines.flaws.joints import ROUNDING, Segments, rows
-from ...outlines.flaws.kinds import COVERED, CROSSING, DIRECTION, DOUBLED, OVERLAP, SPIKE, Limits
+from ...outlines.flaws.kinds import CANCELLING, COVERED, CROSSING, DIRECTION, DOUBLED, OVERLAP, SPIKE, Limits
 from ...outlines.winding import MOST_HALVINGS, winding
 from ...types import BoolArray, FloatArray, IntArray
 
@@ -70,7 +70,7 @@ def enclosed_findings(
     doubled = _doubled(cubics, offsets, touching, crosses, limits.doubled)
     spurs = _spurs(cubics, segments, limits, min(ROUNDING, unit))
     known = (doubled[:, 5] < 0) & np.isin(doubled[:, 1], spurs[spurs[:, 0] == DOUBLED, 1])
-    directed = _directed(cubics, offsets, glyphs, met, unit, outer)
+    directed = _directed(cubics, offsets, glyphs, met, unit, outer, limits.doubled)
     return np.concatenate([_crossed(crossed), doubled[~known], spurs, directed])
 
 
@@ -156,12 +156,14 @@ def _spurs(cubics: FloatArray, segments: Segments, limits: Limits, apart: float)
 
 
 def _directed(
-    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, met: FloatArray, unit: float, way: int
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray, met: FloatArray, unit: float, way: int, least: float
 ) -> FloatArray:
-    """Covered contours, and outer ones that run against ``way``, or, if it is 0, against most of the glyph's.
+    """Covered contours, outer ones that run against ``way``, or, if it is 0, against most of the glyph's, and those
+    that cancel another one.
 
     Args:
         met: (K, 6) where contours meet, see :func:`..curves.crossings.meetings`.
+        least: length of an edge along which a contour that cancels another one is seen to do so.
     """
     count, owners = len(offsets) - 1, np.repeat(np.arange(len(glyphs) - 1), np.diff(glyphs))
     places, lengths = _between_meetings(cubics, offsets, met)
@@ -184,7 +186,24 @@ def _directed(
     covered = (np.bincount(contours, ~inside, count) == 0) & (areas != 0) & (within >= 0)
     which = np.flatnonzero(covered | (runs * wanted[owners] < 0))
     what, other = np.where(covered, COVERED, DIRECTION), np.where(covered, within, -1)
-    return rows(what[which], which, 0.0, np.abs(areas[which]), other=other[which])
+    empty = white.all(axis=1) & (own != 0).any(axis=1)
+    lost = np.bincount(contours, lengths * (empty | (bounds & ~outside)), count)
+    lost[(of_outer < least) & (np.bincount(contours, ~empty & (lengths > 0.0), count) > 0)] = 0.0
+    return np.concatenate([
+        rows(what[which], which, 0.0, np.abs(areas[which]), other=other[which]),
+        _cancelling(areas, met, np.where(lost >= least, lost, 0.0)),
+    ])  # fmt: skip
+
+
+def _cancelling(areas: FloatArray, met: FloatArray, lost: FloatArray) -> FloatArray:
+    """Pairs of contours that meet, run in opposite directions, and both bound white inside them.
+
+    Args:
+        lost: (C,) length along which each does, of contours that elsewhere bound ink, or draw nothing at all.
+    """
+    pairs = np.unique(np.sort(met[:, :2].astype(np.int64), axis=1), axis=0)
+    one, other = pairs[(lost[pairs] > 0).all(axis=1) & (areas[pairs].prod(axis=1) < 0)].T
+    return rows(CANCELLING, one, 0.0, np.minimum(lost[one], lost[other]), other=other)
 
 
 def _between_meetings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> tuple[FloatArray, FloatArray]:

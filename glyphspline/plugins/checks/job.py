@@ -64,12 +64,14 @@ class CheckJob(Job[Head, Checked]):
 
     Attributes:
         kinds: names of those that are looked for. outer: direction of outer contours; see :attr:`.Source.outer`.
+        heights: of baseline, x-height and cap height.
     """
 
     place: Place
     thresholds: Thresholds
     kinds: frozenset[str]
     outer: int
+    heights: tuple[float, ...]
 
     joints = False
 
@@ -100,7 +102,8 @@ class CheckJob(Job[Head, Checked]):
         from .check import measured
 
         em = glyphs[0].metrics.units_per_em
-        return measured([outline.contours for outline in glyphs], self.thresholds, em, self.outer), ()
+        contours = [outline.contours for outline in glyphs]
+        return measured(contours, self.thresholds, em, self.outer, self.heights), ()
 
     def failed(self, task: Head, error: Exception) -> Checked:
         """Why a glyph could not be checked."""
@@ -129,10 +132,11 @@ class AxesJob(CheckJob):
         return _item(masters, sum(map(len, masters.contours)))
 
     def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[Any]]:
-        """As for a font where it is open, at the worst place of each finding."""
+        """As for a font where it is open, at the worst place of each finding; heights but the baseline move."""
         found: tuple[Measured, Sequence[Any]] = service("on_axes")(
-            glyphs, dict(self.place[2]), self.axes, self.steps, self.thresholds, self.outer
-        )
+            glyphs, dict(self.place[2]), self.axes, self.steps, self.thresholds, self.outer,
+            heights=self.heights[:1],
+        )  # fmt: skip
         return found
 
 
@@ -259,9 +263,9 @@ def check_font(
     if unknown := [name for name in names if name not in source.gids]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
     tasks = list(heads_of(source, names).values())
-    job = CheckJob(place_of(source), asked.thresholds, asked.kinds, source.outer)
+    job = CheckJob(place_of(source), asked.thresholds, asked.kinds, source.outer, heights_of(source))
     if chosen:
-        job = AxesJob(job.place, job.thresholds, job.kinds, job.outer, chosen, asked.steps, asked.joints)
+        job = AxesJob(job.place, job.thresholds, job.kinds, job.outer, job.heights, chosen, asked.steps, asked.joints)
 
     def glyphs() -> Iterator[GlyphFindings]:
         reported = Shapes()
@@ -278,6 +282,16 @@ def check_font(
                     along = ()
 
     return glyphs()
+
+
+def heights_of(source: Source) -> tuple[float, ...]:
+    """Heights of baseline, x-height and cap height, as far as the font has them."""
+    if source.each_its_em:
+        return (0.0,)
+    try:
+        return tuple(dict.fromkeys([0.0, *(each for each in (source.x_height, source.cap_height) if each)]))
+    except GlyphsplineError:  # the letter that has the height is broken, which is said of it
+        return (0.0,)
 
 
 @dataclass

@@ -10,8 +10,8 @@ from ...outlines.outline import Contour, Contours, Outline
 from ...outlines.outline_distance import EVEN
 from ...report.pages import page_of
 from ...types import rounded_up, shortened
-from ...writers.svg.document import number, text, union, view_box_value
-from ...writers.svg.path_data import Box, curves_data
+from ...writers.svg.document import number, text, view_box_value
+from ...writers.svg.path_data import Box, both_ways, curves_data, union
 from .difference import Difference, Turn
 
 Drawn = tuple[Difference, Outline | None, Outline | None]
@@ -37,8 +37,9 @@ def card(each: Difference, old: Outline | None, new: Outline | None, tolerance: 
     for kind, outline, scale in (("source", old, 1.0), ("result", new, each.scale)):
         contours = [] if outline is None else [Contour(c.points * scale, c.degrees) for c in outline.contours]
         # Decimals of the drawings.
-        data = curves_data(Contours(contours).arrays, 2)[0]
-        paths.append(f'<path class="{kind}" fill-rule="nonzero" d="{data.text}"/>')
+        arrays = Contours(contours).arrays
+        data = curves_data(arrays, 2)[0]
+        paths.append(f'<path class="{kind}" fill-rule="nonzero" d="{both_ways(data, arrays, 2)}"/>')
         box = data.box if box is None else union(box, data.box)
     em = 1000.0 if old is None else old.metrics.units_per_em
     left, bottom, right, top = box or (0.0, 0.0, em, em)

@@ -8,15 +8,16 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, ClassVar, cast
 
-from ...errors import FontError, OutputError
+from ...errors import FontError, GlyphsplineError, OutputError
 from ...files import write_whole
 from ...fitting.options import Options
 from ...fitting.results import GlyphResult
+from ...outlines.outline import Outline
 from ...readers import Source, open_font
 from ...runs.whole_formats import ResultsFormat
 from ...types import counted, shortened
 from .read_back import Held, Promise, held
-from .tables.font_glyphs import ROUNDING, Flavour, fitting_tolerance
+from .tables.font_glyphs import ROUNDING, Flavour, fitting_tolerance, open_path
 
 NAMED = 5
 """Glyphs named in a remark."""
@@ -34,6 +35,10 @@ class FontFormat(ResultsFormat):
     """A copy of the font with new outlines."""
 
     verb = "refit"
+
+    def refused(self, outline: Outline) -> GlyphsplineError | None:
+        """An outline with open paths."""
+        return open_path(outline)
 
     def is_fitted(self, options: Options) -> bool:
         """Quadratics of continuity "g2" are made of the source."""

@@ -22,6 +22,7 @@ from fontTools.ufoLib import UFOWriter
 from ...errors import OutputError
 from ...fitting.results import ContourResult, GlyphResult
 from ...outlines.extrema import with_extrema
+from ...outlines.open_paths import there_and_back
 from ...outlines.outline import Contour
 from ...readers import Source
 from ...writers.json_file import finite
@@ -93,7 +94,7 @@ def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
     """Write one glyph to the default layer and its polygons to the background."""
     outline, digits = result.outline, result.options.precision
     curves = [[curve] for curve in stored_curves(result)]
-    lines = [[Contour(c.polygon, np.ones(len(c.polygon), dtype=np.int64))] for c in result.contours if len(c.polygon)]
+    lines = [[_polygon(contour)] for contour in result.contours if len(contour.polygon)]
     lib = {LIB_KEY: [_lib_entry(contour) for contour in result.contours], OPTIONS_KEY: _plain(result.options.facts())}
     width, note = as_number(outline.advance), "\n".join(result.notes) or None
     glyph = SimpleNamespace(width=width, unicodes=list(outline.unicodes), note=note, lib=lib)
@@ -102,16 +103,27 @@ def write_glyph(result: GlyphResult, front: Any, back: Any) -> None:
 
 
 def stored_curves(result: GlyphResult) -> list[Contour]:
-    """The contours of a result as a UFO stores them: with points at extrema, which those for fonts have already."""
+    """The contours of a result as a UFO stores them: with points at extrema, but for open paths. Those for fonts have
+    them already.
+    """
     curves, em = [contour.curve for contour in result.contours], result.outline.metrics.units_per_em
-    return curves if result.options.is_for_fonts else [with_extrema(curve, em) for curve in curves]
+    return [c if result.options.is_for_fonts or c.is_open else with_extrema(c, em) for c in curves]
+
+
+def _polygon(contour: ContourResult) -> Contour:
+    """The polygon of a result, an open one of an open path."""
+    points, lines = contour.polygon, np.ones(len(contour.polygon), dtype=np.int64)
+    return Contour(*there_and_back(points, lines[1:])) if contour.curve.is_open else Contour(points, lines)
 
 
 def draw(contours: Iterable[Sequence[Contour]], digits: int, pen: Any, master: int = 0) -> None:
-    """Draw contours with a point pen in one of their masters, rounded."""
+    """Draw contours with a point pen in one of their masters, rounded; open paths as such."""
     for masters in contours:
         pen.beginPath()
-        for node in nodes_of(masters[master].rounded(digits), smooth_ends(masters)):
+        nodes = nodes_of(masters[master].rounded(digits), smooth_ends(masters))
+        if masters[0].is_open:
+            nodes = [nodes[0]._replace(kind="move"), *nodes[1 : len(nodes) // 2 + 1]]
+        for node in nodes:
             pen.addPoint(node.at, node.kind, node.smooth)
         pen.endPath()
 

@@ -21,6 +21,7 @@ from ...fitting.ladders import SHARP_TRIES
 from ...fitting.options import Options
 from ...outlines.contour_arrays import ContourArrays, joined
 from ...outlines.masters import MasterContour, Masters
+from ...outlines.open_paths import are_open
 from ...outlines.outline import Contour, Contours, Outline
 from ...readers.source import Source, tags_of
 from ...types import BoolArray, FloatArray, IntArray, counted, rounded_up
@@ -152,13 +153,16 @@ def convert_masters(masters: Masters, options: Options = DEFAULTS, *, fit: Fit |
     check_options(options)
     options = options.for_em(masters.metrics.units_per_em)
     every = [masters.master(k).arrays for k in range(len(masters))]
-    encloses = np.any([enclosing(arrays) for arrays in every], axis=0)
+    opened = are_open(every[0])
+    encloses = np.any([opened, *(enclosing(arrays) for arrays in every)], axis=0)
     left_out = tuple(
         f"contour {c} has fewer than three distinct points and is left out" for c in np.flatnonzero(~encloses).tolist()
     )
-    kept = np.flatnonzero(encloses).tolist()
+    paths = {c: _as_it_is(masters.contours[c]) for c in np.flatnonzero(opened).tolist()}
+    left_out += tuple(f"contour {c} is an open path, and stays as it was" for c in paths)
+    kept = np.flatnonzero(encloses & ~opened).tolist()
     if not kept:
-        return MastersResult(masters, options, (), left_out)
+        return MastersResult(masters, options, tuple(paths.values()), left_out)
     outlines = [arrays.chosen(kept) for arrays in every]
     try:
         for k, arrays in enumerate(outlines):
@@ -173,7 +177,15 @@ def convert_masters(masters: Masters, options: Options = DEFAULTS, *, fit: Fit |
         results, found = fits.faithful()
     except GlyphsplineError as error:
         raise error.locate(glyph=masters.name) from error.__cause__
-    return MastersResult(masters, options, tuple(results), (*left_out, *fits.remarks(results, found)))
+    every_one = sorted({**dict(zip(kept, results, strict=True)), **paths}.items())
+    contours = tuple(result for _, result in every_one)
+    return MastersResult(masters, options, contours, (*left_out, *fits.remarks(results, found)))
+
+
+def _as_it_is(contour: MasterContour) -> MastersContourResult:
+    """An open path, which is not fitted."""
+    inner = np.zeros(len(contour), dtype=np.bool_)
+    return MastersContourResult(contour, contour, inner, None, None, 0.0, True, 0, True)
 
 
 class _Fits(NamedTuple):

@@ -107,7 +107,7 @@ class Designspace(EditableSource):
 
     def _outline(self, head: Head) -> Outline:
         """The glyph at the location, by the pen of all readers: it drops what has no length there."""
-        masters, pen = self._masters(head), ContourPen()
+        masters, pen = self._masters(head), ContourPen(opens=True)
         instance = masters.instance(self.location)
         for contour, repeats in zip(instance.contours, masters.repeats_of, strict=False):
             pen.contour(contour.points[None], contour.degrees, repeats)
@@ -142,7 +142,7 @@ class Designspace(EditableSource):
         regions = [tuple(map(tuple, r)) for each in (own, *children.values()) for r in each.regions.tolist()]
         found = replace(own, regions=stacked(distinct_regions(regions), len(self.axes)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
-        pen = ContourPen(masters=len(found))
+        pen = ContourPen(masters=len(found), opens=True)
         notes: list[str] = []
         for k, part in enumerate(drawn[0][1]):
             points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)
@@ -152,7 +152,7 @@ class Designspace(EditableSource):
                 for operation, count in part.operations:
                     getattr(pen, operation)(*[points[:, n].T for n in range(at, at + count)])
                     at += count
-                pen.closePath()
+                (pen.endPath if part.is_open else pen.closePath)()
                 continue
             child = children[part.base]
             of_child = child.weights_at(found.peaks)
@@ -188,7 +188,7 @@ class Designspace(EditableSource):
 
 @dataclass(frozen=True)
 class _Part:
-    """A contour, as names of a segment pen's operations and their points, or a component of another glyph.
+    """A contour, closed or open, as names of a segment pen's operations and their points, or a component.
 
     Of a component the points (3, 2) are the rows of its matrix and its offset.
     """
@@ -196,6 +196,7 @@ class _Part:
     operations: tuple[tuple[str, int], ...]
     points: list[tuple[float, float]]
     base: str | None = None
+    is_open: bool = False
 
 
 def _drawing(master: _Master, name: str) -> tuple[list[_Part], float]:
@@ -210,7 +211,7 @@ def _drawing(master: _Master, name: str) -> tuple[list[_Part], float]:
             base, (a, b, c, d, e, f) = given
             parts.append(_Part((), [(a, b), (c, d), (e, f)], base))
         elif operation in ("closePath", "endPath"):
-            parts.append(_Part(tuple(operations), points))
+            parts.append(_Part(tuple(operations), points, is_open=operation == "endPath"))
             operations, points = [], []
         elif given[-1] is None:  # quadratics without a point on the curve begin midway between control points
             (ax, ay), (bx, by) = given[-2], given[0]
@@ -232,8 +233,8 @@ def _compare(parts: list[_Part], expected: list[_Part], name: str, default: str)
         if part.base != other.base:
             kinds = ["a contour" if base is None else f"component {base!r}" for base in (part.base, other.base)]
             raise GlyphsplineError(f"master {name!r} has {kinds[0]}, {default!r} has {kinds[1]}", contour=number)
-        words = ""
-        if len(part.operations) != len(other.operations):
+        words = "its contour is open in one of the two" if part.is_open != other.is_open else ""
+        if not words and len(part.operations) != len(other.operations):
             words = f"{len(part.operations) - 1} segments, not {len(other.operations) - 1}"
         for k, ((one, count), (its, its_count)) in enumerate(zip(part.operations, other.operations, strict=False)):
             if not words and one != its:

@@ -90,6 +90,9 @@ class MastersJob(Output, Job[Task, list[Done]]):
 
         (task,) = tasks
         masters = self._masters(task)
+        for whole in self.spec.whole:
+            if error := whole.refused(masters.instance({})):
+                raise error
         if in_quadratics(self.spec):
             from .quadratic_masters import quadratic_masters
 

@@ -34,14 +34,14 @@ such outlines have kinks that those of ``glyf`` have not."""
 
 def on_axes(
     glyphs: Sequence[Masters], location: Mapping[str, float], tags: Sequence[str], steps: int, thresholds: Thresholds,
-    outer: int = 0, turns_only: bool = False,
+    outer: int = 0, turns_only: bool = False, heights: Sequence[float] = (),
 ) -> tuple[Measured, list[AxisKinks]]:  # fmt: skip
     """Measure glyphs of a variable font: each finding at its worst place, and all smooth joints along each axis.
 
     Args:
         glyphs: in all their masters. location: user-space values of the axes that are not looked along.
         tags: of the axes along which they are looked at. steps: of an axis. outer: see :attr:`.Source.outer`.
-        turns_only: what of joints along axes is left out, see :func:`.kinks_along`.
+        turns_only: what of joints along axes is left out, see :func:`.kinks_along`. heights: see :func:`.check`.
 
     Raises:
         GlyphsplineError: masters of a glyph cannot be distinguished.
@@ -50,7 +50,7 @@ def on_axes(
     chosen = [k for k, axis in enumerate(axes) if axis.tag in tags]
     places = [places_of(masters, location, chosen, steps) for masters in glyphs]
     instances = [item for masters, at in zip(glyphs, places, strict=True) for item in instances_of(masters, at)]
-    rows = measured(instances, thresholds, em, outer)
+    rows = measured(instances, thresholds, em, outer, heights)
     every = np.concatenate(places)
     owners = np.repeat(np.arange(len(glyphs)), [len(at) for at in places])
     rows = rows._replace(glyphs=owners[rows.glyphs], locations=every[rows.glyphs])

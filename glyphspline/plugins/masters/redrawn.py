@@ -81,7 +81,7 @@ def displaced(found: Masters, drawn: Masters) -> float:
 
     Infinite where it has other segments; those of no length do not count.
     """
-    pen, corners = ContourPen(masters=len(drawn)), drawn.grid()
+    pen, corners = ContourPen(masters=len(drawn), opens=True), drawn.grid()
     for contour in drawn.contours:
         pen.contour(contour.points, contour.degrees)
     far, weights = 0.0, (found.weights_at(corners), drawn.weights_at(corners))

@@ -11,7 +11,7 @@ import numpy as np
 from ...errors import OptionError
 from ...fitting.results import GlyphResult, end_to_end
 from ...writers.settings import PLAIN, Appearance
-from ...writers.svg.document import head, number, painting, shown_as, shown_box, text
+from ...writers.svg.document import head, inked, number, painting, shown_as, shown_box, stroking, text
 from ...writers.svg.path_data import curves_data
 from .placed import Layout
 
@@ -35,18 +35,22 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
     em = layout.fonts[0].metrics.units_per_em
     arrays, offsets = end_to_end(results)
     paths = curves_data(arrays.curves, precision, offsets)
-    digest = sha256(repr((layout.text, layout.origin.tolist(), [path.text for path in paths])).encode()).hexdigest()[:8]
+    said = [path.text + path.strokes for path in paths]
+    digest = sha256(repr((layout.text, layout.origin.tolist(), said)).encode()).hexdigest()[:8]
     ids = [f"g{k}-{digest}" for k in range(len(results))]
     names = [
         f' data-glyph="{text(result.outline.name)}" href="#{own}' for own, result in zip(ids, results, strict=True)
     ]
-    ink = curves_data(layout.placed(results).arrays.curves, precision)[0].box
-    box = shown_box(layout.box, ink, look.view_box)
+    ink = curves_data(layout.placed(results).arrays.curves, precision)[0]
+    box = shown_box(layout.box, inked(ink, look, em), look.view_box)
     value, shape = shown_as(box, look, em, precision)
     units = f' data-units-per-em="{number(em, precision)}"'
     parts = [head(value, text(layout.text), units, shape), "<defs>\n"]
     for name, path in zip(ids, paths, strict=True):
-        if path.text:
+        if path.strokes:
+            line = f'<path{stroking(look, em, float(value.split()[3]))} d="{path.strokes}"/>'
+            parts.append(f'<g id="{name}"><path d="{path.text}"/>{line}</g>\n')
+        elif path.text:
             parts.append(f'<path id="{name}" d="{path.text}"/>\n')
     parts.append(f"</defs>\n<g{painting(look, em, float(value.split()[3]))}>\n")
     places = zip(
@@ -58,7 +62,7 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
         parts += [
             f'<use class="glyph" data-cluster="{cluster}"{names[glyph]}"{_put(x, y, angle, precision)}/>\n'
             for _, glyph, cluster, (x, y), angle in own
-            if paths[glyph].text
+            if said[glyph]
         ]
         parts.append("</g>\n")
     return "".join([*parts, "</g>\n</svg>\n"]).encode()

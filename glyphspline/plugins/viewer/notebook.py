@@ -18,7 +18,8 @@ from ...curves.curvature import robust_scale
 from ...fitting.results import BOUNDS, QUANTITIES, GlyphResult, Measures, as_glyph, shown
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import polylines
-from ...outlines.outline import Contour, Outline
+from ...outlines.open_paths import are_open, paths
+from ...outlines.outline import Contour, Contours, Outline
 from ...types import FloatArray, rounded_up
 
 if TYPE_CHECKING:
@@ -281,8 +282,15 @@ def plot(
         from ...outlines.ink import ink_sides
 
         # A curve alone has no ink: it turns left or right.
-        sides = np.ones(1) if curve is not None else ink_sides(glyph.arrays.curves)
-        patches += comb_patches(_teeth(curves, sides, em, scale), closed=closed, width=0.6)
+        if curve is not None:
+            combs = _teeth(curves, np.ones(1), em, scale)
+        else:
+            opened = are_open(glyph.arrays.curves)
+            sides, ways = np.where(opened, 1.0, ink_sides(glyph.arrays.curves)), paths(glyph.arrays.curves, opened)
+            cut = [c.cubics()[: -1 if o else None] for c, o in zip(Contours(ways), opened.tolist(), strict=True)]
+            drawn = zip(_teeth(cut, sides, em, scale), opened.tolist(), strict=True)
+            combs = [each.there_and_back() if o else each for each, o in drawn]
+        patches += comb_patches(combs, closed=closed, width=0.6)
     patches += outline_patch(curves, **{"facecolor": "none", "edgecolor": "black", "linewidth": 1.2} | style)
     for patch in patches:
         axes.add_patch(patch)

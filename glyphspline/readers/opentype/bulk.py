@@ -23,10 +23,11 @@ import uharfbuzz as hb
 
 from ...compiled import callback, compiled, inlined
 from ...outlines.contour_arrays import ContourArrays
+from ...outlines.open_paths import without_area
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...outlines.segments import keep_lasting
 from ...types import BoolArray, FloatArray, Head, IntArray
-from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, notes_of
+from ..pens import COINCIDENT, MAX_COMPONENTS, MAX_SEGMENTS, ContourPen, drawn_by, notes_of
 from ..source import OutlineOrError, attempt
 from .routes import Face
 
@@ -199,6 +200,31 @@ def _contours(
     return points, degrees, offsets, starts, repeats[:m], left_out, before, unusual, snapped
 
 
+def _may_be_strokes(points: FloatArray, starts: IntArray, before: IntArray) -> BoolArray:
+    """(k,) whether a glyph has a contour without area, or nothing but contours that were left out.
+
+    Args:
+        points, starts, before: of :func:`_contours`.
+    """
+    counts, _, _, left_out = np.diff(before, axis=0).T
+    found: BoolArray = (counts == 0) & (left_out > 0)
+    glyphs = np.repeat(np.arange(len(counts)), counts)
+    if len(glyphs):
+        first, end = starts[np.arange(len(glyphs)) + glyphs] + before[glyphs, 2], before[-1, 2]
+        found[glyphs[without_area(points[:end], np.append(first, end))]] = True
+    return found
+
+
+def _replay(operations: FloatArray, pen: ContourPen) -> None:
+    """Draw a glyph's operations once more."""
+    draw, at = (pen.moveTo, pen.lineTo, pen.qCurveTo, pen.curveTo), 0
+    while at < len(operations):
+        kind = int(operations[at])
+        end = at + 1 + 2 * max(kind, 1)
+        draw[kind](*map(tuple, operations[at + 1 : end].reshape(-1, 2).tolist()))
+        at = end
+
+
 @compiled
 def _expected(glyf: Any, loca: IntArray, gids: IntArray) -> IntArray:
     """Number of contours of each glyph by its record, components included; ``UNUSUAL`` where fontTools has to look.
@@ -296,6 +322,8 @@ class BulkReader:
                 points, degrees, offsets, starts, repeats, left_out, before, unusual, snapped = _contours(
                     self._buffer, places, expected
                 )
+                flat = np.flatnonzero(_may_be_strokes(points, starts, before) & ~unusual).tolist()
+                again = {g: drawn_by(partial(_replay, self._buffer[places[g] : places[g + 1]])) for g in flat}
             glyphs = zip(left, unusual.tolist(), snapped.tolist(), pairwise(before.tolist()), strict=False)
             for g, (head, odd, moved, ((c, m, p, a), (d, n, q, b))) in enumerate(glyphs):
                 if odd:
@@ -303,6 +331,8 @@ class BulkReader:
                     continue
                 own = ContourArrays(points[p:q], degrees[m:n], offsets[c + g : d + g + 1], starts[c + g : d + g + 1])
                 contours, notes = Contours(own, repeats[m:n]), notes_of(left_out[a:b].tolist()) if b > a else ()
+                if g in again:
+                    contours, notes, moved = again[g].contours, again[g].notes, again[g].snapped
                 name, gid, unicodes = head
                 made = Outline.trusted(
                     name=name, gid=gid, unicodes=unicodes, advance=float(advance(gid)), contours=contours,

@@ -18,7 +18,7 @@ from fontTools.ttLib.tables._g_l_y_f import USE_MY_METRICS
 from ...errors import GlyphsplineError
 from ...outlines.outline import FontMetrics, Outline
 from ...types import Head
-from ..pens import ContourPen, enter_component
+from ..pens import drawn_by, enter_component
 
 ELSEWHERE = ("SVG ", "COLR", "CBDT", "sbix", "EBDT")
 """Tables that may hold the ink of a glyph without contours: drawings, layers and pictures."""
@@ -100,10 +100,8 @@ class Face:
             name = self._tables.getGlyphName(head.gid)
             if self.normalized:
                 check_variations(self._tables, name)
-            pen = ContourPen(self._glyphs, name)
-            glyph = self._glyphs[name]
-            glyph.draw(TransformPen(pen, (1, 0, 0, 1, self._shift(name), 0)))
-            pen.finish()
+            glyph, shift = self._glyphs[name], (1, 0, 0, 1, self._shift(name), 0)
+            pen = drawn_by(lambda to: glyph.draw(TransformPen(to, shift)), glyph_set=self._glyphs, glyph_name=name)
             advance = float(otRound(glyph.width))  # read last: drawing applies the variations of the width
             unread = () if pen.stacks else self.unread(head.gid)
             return Outline(*head, advance, pen.contours, metrics, pen.notes, pen.snapped, unread)

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ...fitting.results import GlyphResult
+from ...outlines.open_paths import are_open
 from ..settings import CURRENT, PLAIN_MAPS, Combs, ImageKind, Maps, Settings
 from ..svg.comb import SIDES, SOURCE, colour_classes, curvature_scale, legend, palette, shown_by, teeth
-from ..svg.document import em_box, shown_box
-from ..svg.path_data import Box, curves_data
+from ..svg.document import em_box, inked, shown_box
+from ..svg.path_data import PathData, curves_data
 from .basics import DPI, ascii_text, blank, colour_bar, outline_patch, ring, saved
 
 SIZE = 6.0
@@ -22,19 +23,19 @@ LAYOUTS, EDGE = 8, 0.02
 before the axes shrink to one scale in x and y. Mostly one is enough; a glyph as wide as it is high takes some four."""
 
 
-def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: Box | None = None) -> bytes:
+def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, path: PathData | None = None) -> bytes:
     """What :func:`..svg.document.to_svg` draws, as a one-page PDF or as a PNG on white.
 
     Args:
         glyph: a result of :func:`glyphspline.convert`. kind: of the file.
         settings: without a size the drawing is 6 inches high; "currentColor" is black.
-        ink: the box around the glyph's curves, if it is known.
+        path: the data of the glyph's curves, if it is known.
     """
     look = settings.look
     outline = glyph.outline
-    left, bottom, right, top = shown_box(
-        em_box(outline), ink or curves_data(glyph.arrays.curves, glyph.options.precision)[0].box, look.view_box
-    )
+    path = path or curves_data(glyph.arrays.curves, glyph.options.precision)[0]
+    ink = inked(path, look, outline.metrics.units_per_em)
+    left, bottom, right, top = shown_box(em_box(outline), ink, look.view_box)
     width, height = max(right - left, 1.0), max(top - bottom, 1.0)  # as view_box_value has it
     inches = look.inches(height, outline.metrics.units_per_em, SIZE)
     # A height in px is that many pixels. Maximum width and height of a PNG in pixels; a larger one has fewer an inch.
@@ -48,7 +49,18 @@ def write_drawing(glyph: GlyphResult, settings: Settings, kind: ImageKind, ink: 
     fill, stroke = ("black" if colour == CURRENT else colour for colour in (look.fill, look.stroke))
     line = look.line(outline.metrics.units_per_em, height) * inches * 72 / height
     curves = [contour.curve.cubics() for contour in glyph.contours if len(contour.curve)]
-    for patch in outline_patch(curves, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0):
+    opened = are_open(glyph.arrays.curves).tolist()
+    closed, strokes = ([c for c, cut in zip(curves, opened, strict=True) if cut is which] for which in (False, True))
+    patches = outline_patch(closed, facecolor=fill, edgecolor=stroke, linewidth=line if stroke != "none" else 0)
+    if strokes:
+        colour, width = look.open_line(outline.metrics.units_per_em, height)
+        colour = "black" if colour == CURRENT else colour
+        width *= inches * 72 / height
+        patches += outline_patch(
+            [cubics[: len(cubics) // 2] for cubics in strokes], facecolor="none", edgecolor=colour, linewidth=width,
+            capstyle="round", joinstyle="round",
+        )  # fmt: skip
+    for patch in patches:
         patch.set_clip_on(False)
         axes.add_patch(patch)
     return saved(figure, kind, dpi)

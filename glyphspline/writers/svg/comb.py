@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from math import isfinite
 
 import numpy as np
@@ -12,6 +12,7 @@ from ...curves.curvature import ANGLE, Comb, relative, shared_scale
 from ...errors import require_choice
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
+from ...outlines.open_paths import are_open, paths
 from ...outlines.sampling import CORNER_ANGLE
 from ...types import BoolArray, FloatArray, IntArray, counted
 from ..settings import WHOSE, Combs, Whose
@@ -57,6 +58,10 @@ class Teeth:
     relative: FloatArray
     cut: BoolArray
 
+    def there_and_back(self) -> Teeth:
+        """Those of an open path, twice, so that a line through their tips is closed."""
+        return Teeth(*(np.concatenate([each, each[::-1]]) for each in astuple(self)))
+
     def placed(self, place: Callable[[FloatArray], FloatArray]) -> Teeth:
         """The teeth, moved by a map of points."""
         return Teeth(place(self.feet), place(self.tips), self.relative, self.cut)
@@ -80,13 +85,14 @@ def combs(glyph: GlyphResult, density: float = 2.0, whose: Whose = "result") -> 
     from ...curves.comb import control_length, sampled  # here and not above: the package opens without a compiler
     from ...outlines.segments import all_cubics
 
-    curves = curves_of(glyph, whose)
+    opened = are_open(curves_of(glyph, whose))
+    curves = paths(curves_of(glyph, whose), opened)
     cubics = all_cubics(curves)
     spacing = max(SPACING * glyph.outline.metrics.units_per_em, control_length(cubics) / MOST_TEETH) / density
     samples, starts = sampled(cubics, spacing, ANGLE, 0.0)
     found = []
     for c in np.flatnonzero(np.diff(curves.offsets)).tolist():
-        at = starts[curves.offsets[c] : curves.offsets[c + 1] + 1]
+        at = starts[curves.offsets[c] : curves.offsets[c + 1] + 1 - int(opened[c])]  # without the line back
         own = samples[at[0] : at[-1]]
         found.append(Comb(own[:, :2], own[:, 2:4], own[:, 4], own[:, 5], at - at[0]))
     return found
@@ -122,7 +128,8 @@ def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
 def sides_and_corners(
     glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
 ) -> tuple[FloatArray, FloatArray, IntArray]:
-    """(C,) sides of the ink, (k, 2) corners in whose turn teeth have no length, (C + 1,) where each contour's begin.
+    """(C,) sides of the ink, 1.0 of open paths, which have none; (k, 2) corners in whose turn teeth have no length,
+    (C + 1,) where each contour's begin.
 
     Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
     curvatures.
@@ -131,20 +138,23 @@ def sides_and_corners(
 
     turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
     corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
-    return ink_sides(curves_of(glyph, whose)), corners, offsets
+    curves = curves_of(glyph, whose)
+    return np.where(are_open(curves), 1.0, ink_sides(curves)), corners, offsets
 
 
 def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
     """Feet and tips of each contour's comb. Teeth point away from the centre of curvature.
 
-    Without ``in_corners`` a result's teeth in the turn of a corner have no length.
+    Without ``in_corners`` a result's teeth in the turn of a corner have no length. Those of an open path come there and
+    back, so that a line through their tips is closed.
     """
     em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
     sides, corners, offsets = sides_and_corners(glyph, whose, in_corners=in_corners)
-    return [
-        teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
-        for item, c in zip(combs(glyph, 1.0, whose), np.flatnonzero(np.diff(curves.offsets)).tolist(), strict=True)
-    ]
+    found, opened = [], are_open(curves)
+    for item, c in zip(combs(glyph, 1.0, whose), np.flatnonzero(np.diff(curves.offsets)).tolist(), strict=True):
+        own = teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
+        found.append(own.there_and_back() if opened[c] else own)
+    return found
 
 
 def teeth_of(item: Comb, em: float, scale: float, side: float = 1.0, corners: FloatArray | None = None) -> Teeth:

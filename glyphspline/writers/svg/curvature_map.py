@@ -10,6 +10,7 @@ from textwrap import wrap
 import numpy as np
 
 from ...fitting.results import GlyphResult
+from ...outlines.open_paths import are_open, paths
 from ..settings import PLAIN_MAPS, Combs, Maps, Settings, Whose
 from .comb import (
     SIDES,
@@ -23,8 +24,8 @@ from .comb import (
     shown_by,
     sides_and_corners,
 )  # fmt: skip
-from .document import data_attributes, em_box, head, label, number, union, view_box_value
-from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
+from .document import data_attributes, em_box, head, label, number, view_box_value
+from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data, union
 
 WIDEST, STEP = 1.5, 0.02
 """Width in em of the longest legend, and what widths are multiples of: those of many glyphs are equal."""
@@ -109,6 +110,10 @@ def write_map(
         f'<path class="{kind}" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
         f' fill-opacity=".07" d="{path.text}"/>\n'
     )
+    if path.strokes:
+        layers.append(
+            f'<path class="{kind}" stroke="currentColor" stroke-width="{_width(em, STROKE)}" d="{path.strokes}"/>\n'
+        )
     if control_polygon and whose == "result":
         polygons = polylines_data(arrays.controls, precision)[0]
         layers.append(
@@ -162,6 +167,7 @@ def _comb(
     for whose in wanted:
         marks = sides_and_corners(glyph, whose, in_corners=in_corners)
         curves = curves_of(glyph, whose)
+        curves = paths(curves, are_open(curves))
         ends, classes, cut, offsets = comb_teeth(curves, *marks, float(em), float(scale), least, precision)
         if not len(ends):
             continue

@@ -16,7 +16,7 @@ from ...fitting.results import GlyphResult, end_to_end
 from ...outlines.contour_arrays import joined, offsets_of
 from ...outlines.outline import Outline
 from ..settings import CURRENT, VIEW_BOXES, Appearance, Settings, ViewBox
-from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data
+from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data, union
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 XMLNS = 'xmlns="http://www.w3.org/2000/svg"'
@@ -56,7 +56,8 @@ def to_svg(
         fill: colour of the ink: a name of CSS, #rgb, #rrggbb, "none", or "currentColor", that of the text around it.
         stroke: colour of a line along the outline, likewise.
         em: instead of ``size``, the length of an em with its unit: the size that type has, as in "12pt".
-        stroke_width: of that line: font units, "0.01em", or "0.1mm" of a drawing with a size; None: 1/1000 em.
+        stroke_width: of that line: font units, "0.01em", or "0.1mm" of a drawing with a size; None: 1/1000 em. Open
+            paths are such lines too, without a stroke in the colour of the ink and 1/40 em wide.
         bare: a path in an ``svg`` and nothing else, for the web: no label, no metrics, black unless a colour is given.
 
     Raises:
@@ -77,13 +78,16 @@ def write_svg(result: GlyphResult, settings: Settings, path: PathData | None = N
     outline, precision, look = result.outline, result.options.precision, settings.look
     path = path or curves_data(result.arrays.curves, precision)[0]
     em = outline.metrics.units_per_em
-    box = shown_box(em_box(outline), path.box, look.view_box)
+    box = shown_box(em_box(outline), inked(path, look, em), look.view_box)
     value, shape = shown_as(box, look, em, precision)
-    paint = painting(look, em, float(value.split()[3]))
-    if look.bare:
-        return f'<svg {XMLNS} viewBox="{value}"{shape}><path{paint} d="{path.text}"/></svg>'.encode()
-    begin = head(value, label(outline, settings.title), data_attributes(outline, precision), shape)
-    return f'{begin}<path{paint} d="{path.text}"/>\n</svg>\n'.encode()
+    height, end = float(value.split()[3]), "" if look.bare else "\n"
+    drawn = [f'<path{painting(look, em, height)} d="{path.text}"/>{end}'] if path.text or not path.strokes else []
+    if path.strokes:
+        drawn.append(f'<path{stroking(look, em, height)} d="{path.strokes}"/>{end}')
+    begin = f'<svg {XMLNS} viewBox="{value}"{shape}>'
+    if not look.bare:
+        begin = head(value, label(outline, settings.title), data_attributes(outline, precision), shape)
+    return f"{begin}{''.join(drawn)}</svg>{end}".encode()
 
 
 def write_source(result: GlyphResult, settings: Settings, path: PathData | None = None) -> bytes:
@@ -108,6 +112,24 @@ def painting(look: Appearance, em: float, height: float) -> str:
     line = number(look.line(em, height), 3)
     stroke = f' stroke="{text(look.stroke)}" stroke-width="{line}"' if look.stroke != "none" else ""
     return stroke if look.bare and look.fill == CURRENT else f' fill="{text(look.fill)}"{stroke}'
+
+
+def stroking(look: Appearance, em: float, height: float) -> str:
+    """How open paths are drawn, likewise: as lines, without a ``stroke`` in the colour of the ink."""
+    colour, line = look.open_line(em, height)
+    return (
+        f' fill="none" stroke="{text(colour)}" stroke-width="{number(line, 3)}" stroke-linecap="round"'
+        ' stroke-linejoin="round"'
+    )
+
+
+def inked(path: PathData, look: Appearance, em: float) -> Box | None:
+    """The box around a glyph, with the width of the lines that open paths are drawn as."""
+    if path.box is None or not path.strokes:
+        return path.box
+    left, bottom, right, top = path.box
+    half = look.open_line(em, max(top - bottom, 1.0))[1] / 2
+    return left - half, bottom - half, right + half, top + half
 
 
 def em_box(outline: Outline) -> Box:
@@ -161,9 +183,10 @@ def polygon_document(glyph: GlyphResult, source: PathData | None = None, data: P
         data_attributes(outline, precision), ' overflow="visible"',
     )  # fmt: skip
     dots = dots_data(glyph.arrays.polygons.points, comb_precision(em))
+    strokes = f'<path fill="none" d="{source.strokes}"/>' if source.strokes else ""
     drawn = (
         f'{begin}<g class="source" fill="currentColor" fill-opacity=".3" stroke="currentColor"'
-        f' stroke-width="{number(em / 500, 3)}"><path d="{source.text}"/></g>\n'
+        f' stroke-width="{number(em / 500, 3)}"><path d="{source.text}"/>{strokes}</g>\n'
         f'<g class="polygon" fill="none" stroke="#d33" stroke-width="{number(em / 400, 3)}"'
         f' stroke-linecap="round" stroke-linejoin="round"><path d="{data.polygon.text}"/>'
         f'<path stroke-width="{number(em / 100, 3)}" d="{dots}"/></g>\n'
@@ -207,11 +230,6 @@ def data_attributes(outline: Outline, precision: int) -> str:
     return (
         f' data-glyph="{text(outline.name)}" data-gid="{outline.gid}" data-unicodes="{code_points(outline)}"{numbers}'
     )
-
-
-def union(a: Box, b: Box | None) -> Box:
-    """The smallest box around both."""
-    return a if b is None else (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
 
 
 @lru_cache(maxsize=4096)

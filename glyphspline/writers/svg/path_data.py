@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...outlines.contour_arrays import ContourArrays, Polylines, polylines
+from ...outlines.open_paths import are_open, by_kind, paths
 from ...outlines.outline import Contour, Contours
 from ...types import BoolArray, FloatArray, IntArray
 
@@ -22,10 +23,13 @@ Box = tuple[float, float, float, float]
 
 
 class PathData(NamedTuple):
-    """Path data of a glyph, and the tight box around it; None if there is nothing."""
+    """Path data of a glyph, and the tight box around it; None if there is nothing. ``strokes`` is that of open paths,
+    which are drawn as lines.
+    """
 
     text: str
     box: Box | None
+    strokes: str = ""
 
 
 def curves_data(curves: ContourArrays, precision: int, glyphs: IntArray | None = None) -> list[PathData]:
@@ -35,19 +39,34 @@ def curves_data(curves: ContourArrays, precision: int, glyphs: IntArray | None =
         curves: of all glyphs end to end. precision: decimals.
         glyphs: (G + 1,) where the contours of each glyph begin; None: they are one glyph's.
     """
-    return _written(curves, np.ones(curves.num_contours, dtype=np.bool_), precision, glyphs)
+    bounds, opened = np.array([0, curves.num_contours]) if glyphs is None else glyphs, are_open(curves)
+    if not opened.any():
+        return _written(curves, ~opened, precision, bounds)
+    ways, both = paths(curves, opened), by_kind(opened, bounds)
+    closed, strokes = (_written(ways.chosen(which), ~opened[which], precision, ends) for which, ends in both)
+    return [
+        PathData(a.text, b.box if a.box is None else union(a.box, b.box), b.text)
+        for a, b in zip(closed, strokes, strict=True)
+    ]
 
 
 def polylines_data(lines: Polylines, precision: int, glyphs: IntArray | None = None) -> list[PathData]:
     """Path data of polygons and open polylines; arguments as for :func:`curves_data`."""
     ones = np.ones(len(lines.points), dtype=np.int64)
-    return _written(ContourArrays(lines.points, ones, lines.offsets, lines.offsets), lines.closed, precision, glyphs)
+    bounds = np.array([0, len(lines.closed)]) if glyphs is None else glyphs
+    return _written(ContourArrays(lines.points, ones, lines.offsets, lines.offsets), lines.closed, precision, bounds)
 
 
 def path_data(contours: Iterable[Contour], precision: int) -> str:
-    """The contours of one glyph as SVG path data."""
+    """The contours of one glyph as SVG path data; open paths there and back, so that no filling shows."""
     arrays = contours.arrays if isinstance(contours, Contours) else Contours(contours).arrays
-    return curves_data(arrays, precision)[0].text
+    count = arrays.num_contours
+    return _written(arrays, np.ones(count, dtype=np.bool_), precision, np.array([0, count]))[0].text
+
+
+def both_ways(data: PathData, curves: ContourArrays, precision: int) -> str:
+    """Path data of all contours in order, open paths there and back, from what is known of them."""
+    return path_data(Contours(curves), precision) if data.strokes else data.text
 
 
 def polyline_data(points: FloatArray, precision: int, *, closed: bool = False) -> str:
@@ -62,16 +81,20 @@ def dots_data(points: FloatArray, precision: int) -> str:
     return dots_text(np.floor(points * 10.0**precision + (0.5 + TIE)), precision).tobytes().decode("ascii")
 
 
+def union(a: Box, b: Box | None) -> Box:
+    """The smallest box around both."""
+    return a if b is None else (min(a[0], b[0]), min(a[1], b[1]), max(a[2], b[2]), max(a[3], b[3]))
+
+
 @cache
 def comb_precision(em: float) -> int:
     """Decimals of comb coordinates: 1/10,000 em is finer than any screen shows."""
     return max(0, 4 - round(float(np.log10(em))))
 
 
-def _written(curves: ContourArrays, closed: BoolArray, precision: int, glyphs: IntArray | None) -> list[PathData]:
+def _written(curves: ContourArrays, closed: BoolArray, precision: int, bounds: IntArray) -> list[PathData]:
     from .path_text import curves_text  # here and not above: the package opens without a compiler
 
-    bounds = np.array([0, curves.num_contours]) if glyphs is None else glyphs
     unit, found = 10.0**precision, []
     whole = curves._replace(points=np.rint(curves.points * unit))
     text, ends = curves_text(whole, closed, bounds, precision)

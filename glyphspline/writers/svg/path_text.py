@@ -177,10 +177,9 @@ def curves_text(curves: ContourArrays, closed: BoolArray, glyphs: IntArray, prec
                 if degree > 1:
                     bent_x, bent_y = own[degree - 2, 0], own[degree - 2, 1]
                 i, before, x, y = i + degree, degree, own[degree - 1, 0], own[degree - 1, 1]
-            x, y = whole[starts[c], 0], whole[starts[c], 1]
             if closed[c]:
                 text[at] = 90  # Z
-                at += 1
+                at, x, y = at + 1, whole[starts[c], 0], whole[starts[c], 1]
         ends[g + 1] = at
     return text[:at], ends
 

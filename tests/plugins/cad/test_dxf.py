@@ -326,3 +326,23 @@ def test_numbers_are_plain(results: dict[str, gs.GlyphResult]) -> None:
     assert isinstance(text, str)
     assert (format_named("dxf").suffix, format_named("dxf").extra) == (".dxf", "cad")
     assert not re.search(r"np\.|nan|inf\b|^-0\.0$", text, re.MULTILINE)
+
+
+def test_a_single_line_font_is_open_splines(tmp_path: Path) -> None:
+    from tests.outlines.test_open_paths import stick_font
+
+    font = stick_font(tmp_path / "stick.ttf", {"V": [[(0, 0), (200, 700), (400, 0), (200, 700)], [(0, 99), (9, 99)]]})
+    glyph = gs.convert(font.outline("V"))
+    kinds: tuple[DxfKind, ...] = ("spline", "polyline")
+    for kind in kinds:
+        document = ezdxf.read(StringIO(gs.to_dxf(glyph, dxf=kind)))
+        first, last = document.modelspace()
+        assert {first.dxf.layer, last.dxf.layer} == {"outlines"}
+        assert not first.closed
+        points = first.get_points("xy") if kind == "polyline" else list(first.construction_tool().approximate(40))
+        ends = [tuple(round(x, 6) for x in (point[0], point[1])) for point in (points[0], points[-1])]
+        assert ends == [(0, 0), (400, 0)]
+        assert document.audit().errors == []
+    found = gs.to_polylines(glyph)
+    assert found.opened == (True, True)
+    assert found.polygons[0].tolist() == [[0, 0], [200, 700], [400, 0]]

@@ -50,7 +50,7 @@ def replaced(
         held: places at which a point has to stay, by master. keeps_flags: points that stay are smooth
             if they were. Without it those that are smooth now are so, too.
     """
-    if (why := _unlike(old)) is not None:
+    if (why := "is open" if new[0].is_open else _unlike(old)) is not None:
         return why
     rounded = [contour.rounded(digits) for contour in new]
     starts = rounded[0].points[rounded[0].offsets]

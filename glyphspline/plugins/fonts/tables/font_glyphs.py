@@ -24,6 +24,7 @@ from ....errors import GlyphsplineError
 from ....fitting.options import Options
 from ....fitting.results import GlyphResult
 from ....outlines.extrema import extremal_pieces
+from ....outlines.open_paths import are_open
 from ....outlines.outline import Contour, Outline
 from ....types import BoolArray, FloatArray, IntArray
 from ..read_back import Promise
@@ -86,6 +87,8 @@ def drawn_result(
     than the tolerance leaves room for and than rounding it whole does.
     """
     outline, g2 = result.outline, result.options.is_for_fonts
+    if refused := open_path(outline):
+        raise refused
     name, em = outline.name, outline.metrics.units_per_em
     measured = [contour.measures.deviation_bound or contour.measures.deviation for contour in result.contours]
     known = None not in measured
@@ -117,6 +120,13 @@ def drawn_result(
         data = char_string(contours, width, parts, name)
     added = sum(map(len, contours)) - sum(map(len, exact))
     return Drawn(data, bounds_of(data, contours), Promise.of(result, tolerance), added)
+
+
+def open_path(outline: Outline) -> GlyphsplineError | None:
+    """The error of an outline with open paths, which neither an OTF nor a TTF has."""
+    which = np.flatnonzero(are_open(outline.arrays)).tolist()
+    words = "an open path, which fonts would fill or not draw"
+    return GlyphsplineError(words, glyph=outline.name, contour=which[0]) if which else None
 
 
 def stays(result: GlyphResult, flavour: Flavour) -> bool:
@@ -186,7 +196,7 @@ def char_string(contours: Sequence[Contour], width: float | None, parts: int, na
     stored = [Contour(on_grid(contour.points, parts), contour.degrees) for contour in raised]
     check_size([point for contour in stored for point in (*contour.points, contour.points[0])], name)
     for contour in stored:
-        contour.draw(pen, closing=False)
+        contour.draw(pen, closing=False, stays_open=False)
     return pen.getCharString(optimize=not any(map(doubles_back, stored)))
 
 
@@ -230,7 +240,7 @@ def cut_alone(contours: Sequence[Contour], step: float, name: str) -> Glyph:
     collected = TTGlyphPen(None)
     pen = Cu2QuPen(collected, step, all_quadratic=True)
     for contour in contours:
-        contour.draw(pen)
+        contour.draw(pen, stays_open=False)
     check_size(collected.points, name)
     # What is equal but for rounding errors rounds alike: a handle and its point at an extremum half a unit from whole.
     points = np.floor(np.round(np.array(collected.points, dtype=np.float64).reshape(-1, 2), 6) + 0.5).astype(np.int64)
