@@ -127,6 +127,7 @@ class Ufo(EditableSource):
 
     def _drawn(self, name: str) -> tuple[ContourPen, _Glyph]:
         pen, glyph = ContourPen(self.default_layer, name), self.default_layer[name]
+        pen.reverseFlipped = True  # as compilers of sources decompose: a mirrored component keeps its ink
         glyph.draw(pen)
         pen.finish()
         return pen, glyph

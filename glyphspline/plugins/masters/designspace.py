@@ -25,7 +25,7 @@ from fontTools.varLib.models import VariationModel, normalizeValue
 
 from ...errors import FontError, GlyphsplineError
 from ...extras import need
-from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, stacked
+from ...outlines.masters import DesignAxis, MasterContour, Masters, Region, distinct_regions, stacked
 from ...outlines.outline import Outline
 from ...readers.open import UTF8, Reader, beginning
 from ...readers.pens import MAX_COMPONENTS, ContourPen, enter_component
@@ -155,10 +155,13 @@ class Designspace(EditableSource):
                 pen.closePath()
                 continue
             child = children[part.base]
-            of_child = child.weights_at(found.peaks)
+            of_child, is_mirrored = child.weights_at(found.peaks), np.linalg.det(points[0, :2]) < 0  # in the default
             for contour, repeats in zip(child.contours, child.repeats_of, strict=False):
                 placed = np.tensordot(of_child, contour.points, axes=1) @ points[:, :2] + points[:, 2:]
-                pen.contour(placed, contour.degrees, repeats)
+                drawn_so = MasterContour(placed, contour.degrees)
+                if is_mirrored:  # as in :meth:`.Ufo._drawn`
+                    drawn_so, repeats = drawn_so.reversed(), np.roll(repeats[::-1], 1)
+                pen.contour(drawn_so.points, drawn_so.degrees, repeats)
             notes += child.notes
         pen.finish()
         found = replace(

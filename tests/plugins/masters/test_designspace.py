@@ -188,6 +188,26 @@ def test_a_component_keeps_the_masters_that_the_glyph_has_not(space: Path) -> No
     assert points.tolist() == [[25, 8], [185, 8], [185, 718], [25, 718]]
 
 
+def test_mirrored_components_keep_their_ink_in_all_masters(space: Path) -> None:
+    """They have the points that they have in a UFO, and run as they did before they were mirrored."""
+    for style in ("Light", "Regular", "Bold", "Narrow"):
+        change(space, style, "m", components(("c", (-1, 0, 0, 1, 500, 0))))
+        change(space, style, "w", components(("m", (1, 0, 0, -1, 0, 90))))
+    source, ufo = open_source(space), open_source(space.with_name("Regular.ufo"))
+    for name in ("m", "w"):
+        drawn = ufo.outline(name).contours
+        for contour, expected in zip(source.outline(name).contours, drawn, strict=True):
+            assert sorted(contour.points.tolist()) == sorted(expected.points.tolist())
+            assert polygon_area(contour.points) == pytest.approx(polygon_area(expected.points))
+    areas = [[polygon_area(each.points) for each in source.outline(name).contours] for name in "cmw"]
+    assert np.sign(areas[0]).tolist() == np.sign(areas[1]).tolist() == np.sign(areas[2]).tolist()
+
+
+def polygon_area(points: Any) -> float:
+    x, y = np.transpose(points)
+    return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
+
+
 def test_a_named_instance_is_a_location(space: Path) -> None:
     assert corners(open_source(space, location="semi"), "o")[2] == [160, 710]
 
