@@ -19,6 +19,9 @@ from .messages import say, stop
 BRUSHED = "龍好"
 """Characters of the demonstration in brush faces."""
 
+LATIN = "g&"
+"""Those in other faces."""
+
 
 @grouped
 def demo(
@@ -35,7 +38,8 @@ def demo(
     """
     undone, shown, paper = False, [], RunSpec(Options(**PRESETS["paper"]))
     asked = opt.as_typed(subset.text or "")
-    texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
+    fonts = demo_fonts() if font is None else [(font, text_for(font))]
+    texts = [(path, asked or text) for path, text in fonts]
     specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
     with workplace(run, *specs) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
@@ -62,6 +66,13 @@ def demo(
     return undone
 
 
+def text_for(font: Path) -> str:
+    """The characters that show a font: those of brush faces where it has them."""
+    from ..readers import open_source
+
+    return BRUSHED if open_source(font).select(text=BRUSHED) else LATIN
+
+
 def demo_fonts() -> list[tuple[Path, str]]:
     """The fonts and characters shown when none are given: the repository's, and one that comes with matplotlib."""
     fonts = Path(__file__).parents[2] / "fonts_test"
@@ -71,4 +82,4 @@ def demo_fonts() -> list[tuple[Path, str]]:
 
     dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
     brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
-    return [(dejavu, "g&"), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
+    return [(dejavu, LATIN), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
