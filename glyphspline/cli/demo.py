@@ -19,9 +19,6 @@ from .messages import say, stop
 BRUSHED = "龍好"
 """Characters of the demonstration in brush faces."""
 
-LATIN = "g&"
-"""Those in other faces."""
-
 
 @grouped
 def demo(
@@ -38,8 +35,7 @@ def demo(
     """
     undone, shown, paper = False, [], RunSpec(Options(**PRESETS["paper"]))
     asked = opt.as_typed(subset.text or "")
-    fonts = demo_fonts() if font is None else [(font, text_for(font))]
-    texts = [(path, asked or text) for path, text in fonts]
+    texts = [(path, asked or text) for path, text in ([(font, BRUSHED)] if font else demo_fonts())]
     specs = [paper if text == BRUSHED else RunSpec() for _, text in texts]
     with workplace(run, *specs) as executor:
         for (path, text), spec in zip(texts, specs, strict=True):
@@ -66,13 +62,6 @@ def demo(
     return undone
 
 
-def text_for(font: Path) -> str:
-    """The characters that show a font: those of brush faces where it has them."""
-    from ..readers import open_source
-
-    return BRUSHED if open_source(font).select(text=BRUSHED) else LATIN
-
-
 def demo_fonts() -> list[tuple[Path, str]]:
     """The fonts and characters shown when none are given: the repository's, and one that comes with matplotlib."""
     fonts = Path(__file__).parents[2] / "fonts_test"
@@ -82,4 +71,4 @@ def demo_fonts() -> list[tuple[Path, str]]:
 
     dejavu = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
     brushes = ("kouzan-gyosho.ttf", "kouzan-kaisho.ttf", "kouzan-gyosho.otf")
-    return [(dejavu, LATIN), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
+    return [(dejavu, "g&"), *((fonts / name, BRUSHED) for name in brushes)]  # a picture comes soon
