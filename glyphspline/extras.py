@@ -15,7 +15,7 @@ EXTRAS = {
     "cad": ("DXF", "ezdxf"),
     "drawings": ("a drawing with style sheets, clips or strokes", "cssselect2", "tinycss2", "pathops"),
     "parquet": ("Parquet", "pyarrow"),
-    "sources": ("reading Glyphs files", "glyphsLib"),
+    "sources": ("reading Glyphs files", "glyphsLib", "ufo2ft"),
     "cluster": ("--jobs tcp://…", "distributed"),
     "remote": ("a URL", "fsspec"),
     "fontspector": ("the plug-in of fontspector", "fontspectorapi"),

@@ -37,7 +37,7 @@ def demo(
     figures, drawn = (font, font) if font else demo_fonts()
     with workplace(run, spec) as executor:
         source = opened(drawn, opt.Instance(), run.quiet)
-        names = source.select(text=asked or (BRUSHED if font else LATIN))
+        names = source.select(text=asked or (BRUSHED if font else LATIN)) or source.select(text=LATIN)
         if not names:
             stop(f"{drawn} has none of {asked or BRUSHED}: give --text")
         if figures_of := hooks.find("services", "experiment"):

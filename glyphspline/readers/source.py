@@ -50,6 +50,7 @@ class Source(ABC):
             the shaper knows them.
         shaper: HarfBuzz's font at the location, to shape text with; None for a source without tables for shaping.
         each_its_em: whether each glyph has an em of its own.
+        assigned: code points of private use that the reader gave to glyphs, to their names.
         outer: the direction in which outer contours run by the rules of the format: 1 counter-clockwise (PostScript),
             -1 clockwise (TrueType), 0 if it has none.
     """
@@ -66,6 +67,7 @@ class Source(ABC):
     shaper: Any = None
     outer: int = 0
     each_its_em: bool = False
+    assigned: Mapping[int, str] = MappingProxyType({})
     family: str
     style: str
     metrics: FontMetrics

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from types import SimpleNamespace
+from types import MappingProxyType, SimpleNamespace
 from typing import Any
 
 from fontTools.pens.pointPen import PointToSegmentPen
@@ -40,9 +40,11 @@ class EditableSource(Source):
 
     Attributes:
         folders: the UFOs beside the file at ``path``; none if that is one.
+        others: why glyphs are drawn otherwise than by their own points, which then take no outlines back.
     """
 
     folders: Sequence[Path] = ()
+    others: Mapping[str, str] = MappingProxyType({})
 
     @abstractmethod
     def drawings(self, name: str) -> Sequence[Drawing]:

@@ -114,7 +114,7 @@ class Summary:
 
     def lines(self) -> Iterator[str]:
         """What there is to say of contours, single glyphs and files, as lines of text; failures come last."""
-        if self.contours:
+        if self.splines:
             yield f"contours that are one closed spline without a corner: {self.splines} of {self.contours}"
         if self.worst and self.aim and self.outside_tolerance:
             yield f"not within {self.aim}: {listed(self.named['outside_tolerance'], self.outside_tolerance)}"

@@ -14,6 +14,7 @@ from fontTools.ufoLib import UFOWriter
 from glyphspline.errors import FontError, GlyphsplineError
 from glyphspline.readers import Source, open_font, open_source
 from glyphspline.readers.ufo import Ufo
+from glyphspline.types import FloatArray
 from tests.places import FONTS
 
 
@@ -66,6 +67,34 @@ def folder(tmp_path: Path) -> Path:
     writer.writeLib({"public.glyphOrder": ["pair", "gone", "square"], "public.skipExportGlyphs": ["_part", "alone"]})
     writer.writeLayerContents()
     return path
+
+
+def test_mirrored_components_keep_their_ink(tmp_path: Path) -> None:
+    """A square over its own mirror image is inked where they overlap; mirrored twice it is as it was."""
+    writer = UFOWriter(tmp_path / "Mirror.ufo")
+    glyphs = writer.getGlyphSet()
+
+    def half(pen: object) -> None:
+        pen.beginPath()  # type: ignore[attr-defined]
+        for point in ((0, 0), (300, 0), (300, 200), (0, 200)):
+            pen.addPoint(point, "line")  # type: ignore[attr-defined]
+        pen.endPath()  # type: ignore[attr-defined]
+
+    glyphs.writeGlyph("half", Drawn(500), half)
+    glyphs.writeGlyph("turned", Drawn(500), lambda pen: pen.addComponent("half", (-1, 0, 0, 1, 500, 0)))
+    glyphs.writeGlyph("again", Drawn(500), lambda pen: pen.addComponent("turned", (-1, 0, 0, 1, 500, 0)))
+    glyphs.writeContents()
+    writer.writeLayerContents()
+    ufo = open_source(tmp_path / "Mirror.ufo")
+    first, turned, again = (ufo.outline(name).contours[0].points for name in ("half", "turned", "again"))
+    assert [signed_area(each) for each in (first, turned, again)] == [60000.0] * 3
+    assert turned.min(axis=0).tolist() == [200, 0]
+    assert again.tolist() == first.tolist()
+
+
+def signed_area(points: FloatArray) -> float:
+    x, y = points.T
+    return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
 
 
 def test_a_ufo_is_a_source(folder: Path) -> None:

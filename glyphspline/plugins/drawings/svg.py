@@ -14,11 +14,13 @@ from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
+from unicodedata import category
 
 import numpy as np
 
-from ...errors import FontError, GlyphsplineError
-from ...outlines.outline import FontMetrics, Outline
+from ...errors import FontError, GlyphsplineError, is_positive
+from ...outlines.contour_arrays import ContourArrays
+from ...outlines.outline import Contours, FontMetrics, Outline
 from ...readers.open import Reader, is_xml
 from ...readers.pens import ContourPen
 from ...readers.source import Location, Source, first_claims, opening
@@ -33,13 +35,19 @@ FLIP = np.diag([1.0, -1.0, 1.0])
 
 STROKES = "strokes"
 """The named instance of drawings that has their strokes too: ``--strokes``."""
+EM = "em"
+"""The place of drawings as glyphs of a font with so many units per em."""
+
+PRIVATE, SIGNS = range(0xE000, 0xF900), ("So", "Sk")
+"""Code points of private use; and the categories of pictures and of accents that stand alone."""
 
 
 class SvgDrawings(Source):
     """One SVG file or a folder of them.
 
     Attributes:
-        path: file or folder, as given. face_index: 0. location: empty, or strokes at 1, where these are ink too.
+        path: file or folder, as given. face_index: 0. location: strokes at 1, where these are ink too, and the em of a
+            font, for which drawings are scaled, stand on the baseline, and have a code point each.
         family, style: the name of the file or folder without suffix, and "Regular".
         metrics: of the first drawing.
         glyph_names: in the order of ``data-gid`` if every drawing has one, else in the order of the files' names. A
@@ -56,7 +64,7 @@ class SvgDrawings(Source):
         read = list[tuple[str, Outline | FontError]]()
         for file in self._files:
             try:
-                one = read_drawing(file, bool(self.location))
+                one = read_drawing(file, STROKES in self.location, self.location.get(EM))
                 read.append((one.name, one))
             except FontError as error:  # raised when the drawing is asked for
                 read.append((file.stem, error))
@@ -72,6 +80,14 @@ class SvgDrawings(Source):
         self.glyph_names = tuple(self._outlines)
         self.metrics = min(outlines, key=lambda outline: outline.gid).metrics
         self.cmap = first_claims((outline.name, outline.unicodes) for outline in outlines)
+        if EM in self.location:
+            # Drawings that say their characters are glyphs of a font, which may have none.
+            said = {file for file in self._files if b"data-unicodes" in file.read_bytes()}
+            of_file = zip(self._files, (found for _, found in read), strict=True)
+            icons = [one for file, one in of_file if isinstance(one, Outline) and file not in said]
+            free = (code for code in PRIVATE if code not in self.cmap)
+            self.assigned = dict(zip(free, sorted(one.name for one in icons if not one.unicodes), strict=False))
+            self.cmap = {**self.cmap, **self.assigned}
 
     def _bytes(self) -> Iterable[bytes]:
         return (file.read_bytes() for file in self._files)
@@ -80,27 +96,42 @@ class SvgDrawings(Source):
         found = self._outlines[head.name]
         if isinstance(found, FontError):
             raise FontError(found.message, font=found.font)
-        return replace(found, gid=head.gid)
+        return replace(found, gid=head.gid, unicodes=head.unicodes if EM in self.location else found.unicodes)
+
+
+def of_font(outline: Outline, em: float) -> Outline:
+    """A drawing as a glyph of a font of this em. One that hangs from its top edge stands on the baseline."""
+    scale, metrics = em / outline.metrics.units_per_em, outline.metrics
+    up = -metrics.descender if metrics.ascender <= 0 else 0.0
+    points, degrees, offsets, starts = outline.arrays
+    arrays = ContourArrays((points + np.array([0.0, up])) * scale, degrees, offsets, starts)
+    return replace(
+        outline, advance=outline.advance * scale,
+        contours=Contours(arrays, outline.repeats), snapped=outline.snapped * scale,
+        metrics=FontMetrics(em, (metrics.ascender + up) * scale, (metrics.descender + up) * scale),
+    )  # fmt: skip
 
 
 def place_of(asked: Location) -> Mapping[str, float]:
-    """With strokes, or empty.
+    """With strokes, of an em, or empty.
 
     Raises:
         FontError: something else is asked for.
     """
     place = {asked.strip().casefold(): 1.0} if isinstance(asked, str) else {**(asked or {})}
     place.pop("", None)
-    if not {*place} <= {STROKES}:
-        raise FontError(f"no place {', '.join(place)!r}: a drawing has {STROKES}, which draws these too")
-    return MappingProxyType({STROKES: 1.0} if place.get(STROKES) else {})
+    if not {*place} <= {STROKES, EM}:
+        raise FontError(f"no place {', '.join(place)!r}: a drawing has {STROKES}, which draws these too, and {EM}")
+    if not is_positive(place.get(EM, 1.0)):
+        raise FontError(f"an em of {place[EM]} units")
+    return MappingProxyType({name: value for name, value in place.items() if value})
 
 
-def read_drawing(file: Path, strokes: bool = False) -> Outline:
+def read_drawing(file: Path, strokes: bool = False, em: float | None = None) -> Outline:
     """Read one drawing as an outline, y up; its glyph index is ``data-gid``, or 0.
 
     Args:
-        file: the drawing. strokes: whether its strokes are ink, as outlines.
+        file: the drawing. strokes: whether its strokes are ink, as outlines. em: of a font, for :func:`of_font`.
 
     Raises:
         GlyphsplineError: the file is too large, not an SVG drawing, or what cannot be bounded.
@@ -121,9 +152,10 @@ def read_drawing(file: Path, strokes: bool = False) -> Outline:
     if (font := next(root.iter("font"), None)) is not None:
         unread.add("an SVG font, whose glyphs are not read", document.lines[font])
     name, gid = root.get("data-glyph") or file.stem, int(root.get("data-gid") or 0)
-    unicodes = _unicodes(root.get("data-unicodes"), name)
+    unicodes = _unicodes(root.get("data-unicodes"), name, em is not None)
     notes = (*pen.notes, *unread.remarks)
-    return Outline(name, gid, unicodes, advance, pen.contours, metrics, notes, pen.snapped, unread.phrases)
+    found = Outline(name, gid, unicodes, advance, pen.contours, metrics, notes, pen.snapped, unread.phrases)
+    return found if em is None else of_font(found, em)
 
 
 def draw_chain(points: Sequence[tuple[float, float]], degrees: Sequence[int], closed: bool, pen: Any) -> None:
@@ -136,13 +168,16 @@ def draw_chain(points: Sequence[tuple[float, float]], degrees: Sequence[int], cl
     (pen.closePath if closed else pen.endPath)()
 
 
-def _unicodes(written: str | None, name: str) -> tuple[int, ...]:
+def _unicodes(written: str | None, name: str, is_icon: bool) -> tuple[int, ...]:
+    """The characters that a drawing has, or that its name says; names as heart and ring are those of icons, too."""
     if written is not None:
         return tuple(int(code, 16) for code in re.findall(r"U\+([0-9A-Fa-f]{1,6})", written))
     from fontTools import agl
 
     text = name if len(name) == 1 else agl.toUnicode(name)
-    return (ord(text),) if len(text) == 1 else ()
+    if len(text) != 1 or (is_icon and len(name) > 1 and name.isalpha() and text > "\xff" and category(text) in SIGNS):
+        return ()
+    return (ord(text),)
 
 
 def metrics_of(root: Any) -> tuple[FontMetrics, float]:

@@ -15,7 +15,7 @@ from ...cli.messages import print_json, say, stop
 from ...cli.tables import runs_facts, runs_table
 from ...fields import WRITTEN, About
 from ...hooks import service
-from .refit import kept, own_format
+from .refit import em_of, kept, own_format
 from .spec import RefitSpec
 
 if TYPE_CHECKING:
@@ -40,6 +40,10 @@ def refit(
     axis: Annotated[
         str | None,
         About("Make masters of single fonts, on this axis: wght=300:700, a value for each.", WRITTEN, "TAG=A:B"),
+    ] = None,
+    units_per_em: Annotated[
+        int | None,
+        About("Scale drawings to this em of a font; without it, to 1000 those smaller than 500.", WRITTEN, "N"),
     ] = None,
 ) -> bool:
     """Put fitted outlines back into fonts, sources and drawings: the fewest points, smooth to the curvature.
@@ -68,6 +72,9 @@ def refit(
     if not subset.is_given:
         subset = opt.Subset(all_glyphs=True)
     spec = replace(spec, masters=masters)
+    if (em := em_of(found, spec, units_per_em)) is not None:
+        place = [instance.location, "strokes=1" if instance.strokes else None, f"em={em:g}"]
+        instance = replace(instance, strokes=False, location=",".join(filter(None, place)))
     for name, given, why in (
         ("location", instance.location, "masters are of the whole design space"),
         ("jobs", run.scheduler, "masters are converted on this machine"),

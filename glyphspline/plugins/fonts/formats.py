@@ -75,7 +75,13 @@ class FontFormat(ResultsFormat):
         remark += far
         if len((new := open_font(path)).glyph_names) == len(source.glyph_names):
             remark += f"; {compared(stored_facts(source, gids), stored_facts(new, gids))}"
-        return [remark], found.facts()
+        return [remark, *codes_given(source)], found.facts()
+
+
+def codes_given(source: Source) -> list[str]:
+    """What is said of the code points that drawings were given."""
+    codes = [f"U+{code:04X} {name}" for code, name in source.assigned.items()]
+    return [f"code points of private use: {', '.join(codes)}"] if codes else []
 
 
 class Otf(FontFormat):
@@ -108,6 +114,7 @@ class Ufo(ResultsFormat):
             return self.put_back(source, glyphs, spec, path)
         promises = dict[str, Promise]()
         remarks = [f"{path.name}: {write_ufo(source, promised(glyphs, spec, promises), path)} glyphs"]
+        remarks += codes_given(source)
         return as_read(path, promises, None, remarks)
 
     def put_back(self, source: Source, glyphs: Iterator[GlyphResult], spec: Any, copy: Path | None) -> Written:

@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
-from ...errors import OptionError
+from ...errors import OptionError, require
 from ...hooks import service
 from ...readers import Source, open_source
 from ...readers.open import reader_of
@@ -19,6 +19,9 @@ from .spec import RefitSpec
 
 if TYPE_CHECKING:
     from ...runs.summary import Summary
+
+SMALL, STANDARD = 500.0, 1000.0
+"""An em smaller than this has too coarse a grid for curves, and becomes the usual one."""
 
 
 def refit(
@@ -52,6 +55,8 @@ def refit(
     if not (spec.formats or spec.is_back):
         own, in_masters = own_format([face.path], False)
         spec = replace(spec, formats=(own,), masters=spec.masters or (in_masters and not face.location))
+    if not face.location and (em := em_of([face.path], spec)) is not None:
+        face = open_source(face.path, location={"em": em})
     names = face.glyph_names if glyphs is None else tuple(glyphs)
     with kept(None if out is None else Path(out)) as folder, workers(jobs, kinds=spec.kinds) as pool:
         if spec.masters:
@@ -71,6 +76,23 @@ def own_format(paths: Sequence[Path], become_one: bool) -> tuple[str, bool]:
             f"sources of several kinds, {', '.join(sorted(found))}: refit those of one kind, or say a format"
         )
     return found.pop(), all(reader is not None and reader.has_axes for reader in readers.values())
+
+
+def em_of(paths: Sequence[Path], spec: RefitSpec, asked: int | None = None) -> float | None:
+    """The em to which drawings are scaled that become a font; None: these are none.
+
+    Raises:
+        OptionError: one is asked for, and they are none, or it is none of a font.
+    """
+    readers = [reader_of(path) for path in paths]
+    if not {"otf", "ttf", "ufo"}.intersection(spec.formats) or any(r is None or r.own != "svg" for r in readers):
+        require(asked is None, "--units-per-em is for drawings that become a font", asked)
+        return None
+    if asked is not None:
+        require(16 <= asked <= 16384, "a font has 16 to 16384 units per em", asked)
+        return float(asked)
+    em = open_source(paths[0]).metrics.units_per_em
+    return em if em >= SMALL else STANDARD
 
 
 @contextmanager

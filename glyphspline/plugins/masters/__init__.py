@@ -8,7 +8,7 @@ from __future__ import annotations
 from ...hooks import Plugin
 
 PLUGIN = Plugin(
-    readers={"designspaces": ".designspace:READER"},
+    readers={"designspaces": ".designspace:READER", "glyphs": ".glyphs_file:READER"},
     services={
         "axis_pages": ".axis_pages:axis_pages",
         "check_axis": ".convert_masters:check_axis",

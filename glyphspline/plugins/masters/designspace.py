@@ -1,6 +1,6 @@
 """Designspaces: variable sources, whose masters are UFOs or layers of them, through fontTools' designspaceLib.
 
-Glyphs files are among them: glyphsLib turns one into a designspace with its UFOs.
+Glyphs files become such: :mod:`.glyphs_file`.
 
 A glyph may be missing in some of the masters; then it has regions of its own, as its components may have. Between the
 masters it is interpolated by fontTools' model of variations, from which variable fonts are built.
@@ -8,12 +8,9 @@ masters it is interpolated by fontTools' model of variations, from which variabl
 
 from __future__ import annotations
 
-import re
-import tempfile
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument, processRules
@@ -24,10 +21,9 @@ from fontTools.varLib.errors import VariationModelError
 from fontTools.varLib.models import VariationModel, normalizeValue
 
 from ...errors import FontError, GlyphsplineError
-from ...extras import need
-from ...outlines.masters import DesignAxis, Masters, Region, distinct_regions, stacked
+from ...outlines.masters import DesignAxis, MasterContour, Masters, Region, distinct_regions, stacked
 from ...outlines.outline import Outline
-from ...readers.open import UTF8, Reader, beginning
+from ...readers.open import Reader
 from ...readers.pens import MAX_COMPONENTS, ContourPen, enter_component
 from ...readers.source import Location, parsed
 from ...readers.ufo import Drawing, EditableSource, Ufo, components_of
@@ -155,10 +151,13 @@ class Designspace(EditableSource):
                 (pen.endPath if part.is_open else pen.closePath)()
                 continue
             child = children[part.base]
-            of_child = child.weights_at(found.peaks)
+            of_child, is_mirrored = child.weights_at(found.peaks), np.linalg.det(points[0, :2]) < 0  # in the default
             for contour, repeats in zip(child.contours, child.repeats_of, strict=False):
                 placed = np.tensordot(of_child, contour.points, axes=1) @ points[:, :2] + points[:, 2:]
-                pen.contour(placed, contour.degrees, repeats)
+                drawn_so = MasterContour(placed, contour.degrees)
+                if is_mirrored:  # as in :meth:`.Ufo._drawn`
+                    drawn_so, repeats = drawn_so.reversed(), np.roll(repeats[::-1], 1)
+                pen.contour(drawn_so.points, drawn_so.degrees, repeats)
             notes += child.notes
         pen.finish()
         found = replace(
@@ -265,43 +264,4 @@ def _normalised(axis: AxisDescriptor, value: float) -> float:
     return float(normalizeValue(value, (low, default, high)))
 
 
-class GlyphsFile(Designspace):
-    """A Glyphs file at one location, which needs the extra ``sources``.
-
-    Its UFOs are in a folder among the temporary files, which lasts as long as the source.
-    """
-
-    format, kind = "Glyphs", "Glyphs file"
-
-    def __init__(self, path: Path, location: Location = None) -> None:
-        self._folder = tempfile.TemporaryDirectory(prefix="glyphspline-")
-        made = need("sources").build_masters(
-            path, self._folder.name, minimal=True, write_skipexportglyphs=True, designspace_path=None
-        )
-        super().__init__(path, location, Path(made.designspace_path))
-
-    def _bytes(self) -> Iterable[bytes]:
-        return (self.path.read_bytes(),)
-
-    def master_ids(self, ids: Sequence[str]) -> dict[Path, str]:
-        """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""
-        key = "com.schriftgestaltung.fontMasterOrder"
-        return {ufo.path: ids[ufo.lib.get(key, 0)] for ufo in self._ufos}
-
-    def text_edit(self, layer: str | None) -> Any:
-        """See :meth:`.EditableSource.text_edit`."""
-        from .glyphs_edit import GlyphsEdit
-
-        return GlyphsEdit(self.path, self.master_ids, layer)
-
-
-def is_glyphs(head: bytes) -> bool:
-    """Whether a file that begins so is a Glyphs file: a property list in braces."""
-    return re.match(rb'\s*\{\s*"?\.?\w+"?\s*=', head.removeprefix(UTF8)) is not None
-
-
-def _opened(path: Path, location: Location) -> Designspace:
-    return (GlyphsFile if is_glyphs(beginning(path)) else Designspace).opened(path, location)
-
-
-READER = Reader(lambda path, head: is_glyphs(head) or b"<designspace" in head, _opened, has_axes=True)
+READER = Reader(lambda path, head: b"<designspace" in head, Designspace.opened, has_axes=True)

@@ -16,7 +16,7 @@ class GlyphsEdit(Edit):
     """The glyphs of a Glyphs file.
 
     Args:
-        path: of the file. master_ids: see :meth:`.designspace.GlyphsFile.master_ids`.
+        path: of the file. master_ids: see :meth:`.glyphs_file.GlyphsFile.master_ids`.
         layer: put new outlines into this layer beside the old ones.
     """
 

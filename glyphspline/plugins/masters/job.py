@@ -52,7 +52,8 @@ from ..fonts.formats import back_to_source
 from ..fonts.spec import RefitSpec
 from ..fonts.tables.font_glyphs import SHARE, Flavour
 from .convert_masters import MastersContourResult, MastersResult, check_options, convert_masters
-from .designspace import Designspace, GlyphsFile
+from .designspace import Designspace
+from .glyphs_file import GlyphsFile
 from .redrawn import Redrawn, StoredGlyph, bound_of, of_masters
 from .single_fonts import Unmatched, axis_of, masters_of_fonts
 

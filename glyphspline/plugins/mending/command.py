@@ -114,7 +114,8 @@ def mend(
 
 def copy_of(source: EditableSource | Font, out: Path) -> Path:
     """Where the copy of a source goes: a designspace's is a folder of its files, as its UFOs lie beside it."""
-    from ..masters.designspace import Designspace, GlyphsFile
+    from ..masters.designspace import Designspace
+    from ..masters.glyphs_file import GlyphsFile
 
     make_folder(out)
     is_folder = isinstance(source, Designspace) and not isinstance(source, GlyphsFile)

@@ -210,3 +210,31 @@ def test_a_folder_of_drawings_becomes_a_font(tmp_path: Path) -> None:
     font = gs.open_font(made)
     assert font.select(text="A")
     assert len(font.outline(font.select(text="A")[0]).contours) == 2
+
+
+@pytest.mark.parametrize("asked", [None, 2048])
+def test_icons_become_a_font_of_a_proper_em(asked: int | None, tmp_path: Path) -> None:
+    """A disc of radius 10 in a box of 24 stays round within a thousandth of the em, on the baseline."""
+    folder = tmp_path / "icons"
+    folder.mkdir()
+    disc = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 24 24"><circle cx="12" cy="12" r="10"/></svg>'
+    (folder / "disc.svg").write_text(disc)
+    words = ["refit", str(folder), "--format", "ttf", "--out", str(tmp_path / "o"), "--jobs", "1"]
+    found = CliRunner().invoke(app, [*words, *(["--units-per-em", str(asked)] if asked else [])])
+    assert found.exit_code == 0, found.output
+    assert "U+E000 disc" in found.output
+    (path,) = (tmp_path / "o").glob("*.ttf")
+    font, em = gs.open_font(path), asked or 1000
+    assert font.metrics == gs.FontMetrics(em, em, 0)
+    contour = font.outline(font.cmap[0xE000]).contours[0]
+    places = np.linspace(0, len(contour), 500, endpoint=False)
+    radii = np.hypot(*(contour.at(places) - em / 2).T)
+    assert np.abs(radii - em * 10 / 24).max() <= em / 1000
+
+
+def test_an_em_is_for_drawings_that_become_a_font(tmp_path: Path) -> None:
+    font = str(FONTS / "kouzan-gyosho.ttf")
+    words = ["refit", font, "--format", "ttf", "--text", "O", "--units-per-em", "500", "--out", str(tmp_path / "o")]
+    found = CliRunner().invoke(app, words)
+    assert found.exit_code == 2
+    assert "--units-per-em is for drawings" in found.output

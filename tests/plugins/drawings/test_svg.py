@@ -199,3 +199,23 @@ def test_a_broken_drawing_of_a_folder_costs_only_itself(tmp_path: Path) -> None:
         (tmp_path / f"{name}.svg").unlink()
     with pytest.raises(FontError, match=r"A\.svg: not well-formed XML"):
         open_source(tmp_path)
+
+
+def test_drawings_become_glyphs_of_a_font(tmp_path: Path) -> None:
+    """Scaled to the em, on the baseline; what names no character gets a code point of private use."""
+    for name in ("heart", "ring", "A", "uni9F8D", "no-such"):
+        (tmp_path / f"{name}.svg").write_text(
+            '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 24 24"><path d="M2 2h20v10h-20z"/></svg>'
+        )
+    (tmp_path / "a.alt.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 24 24" data-unicodes=""><path d="M2 2h9v9z"/></svg>'
+    )
+    source = open_source(tmp_path, location={"em": 1200})
+    assert source.cmap == {0x41: "A", 0x9F8D: "uni9F8D", 0xE000: "heart", 0xE001: "no-such", 0xE002: "ring"}
+    outline = source.outline("heart")
+    assert (outline.unicodes, outline.advance) == ((0xE000,), 1200)
+    assert outline.contours[0].points.min(axis=0).tolist() == [100, 600]
+    assert outline.contours[0].points.max(axis=0).tolist() == [1100, 1100]
+    metrics = source.metrics
+    assert (metrics.units_per_em, metrics.ascender, metrics.descender) == (1200, 1200, 0)
+    assert open_source(tmp_path).cmap[0x2665] == "heart"

@@ -204,6 +204,7 @@ def test_masters_stay_compatible_and_nothing_else_changes(
     make: Callable[[Path], Path], layer: str | None, tmp_path: Path
 ) -> None:
     pytest.importorskip("glyphsLib")
+    pytest.importorskip("ufo2ft")
     path = make(tmp_path)
     before = open_source(path)
     old = {name: before.masters(name) for name in before.glyph_names}

@@ -13,6 +13,7 @@ from fontTools.designspaceLib import DesignSpaceDocument
 from fontTools.ufoLib import UFOWriter
 
 from glyphspline import FontError, GlyphsplineError, open_source
+from glyphspline.plugins.fonts.back.back import New, write_back
 from glyphspline.plugins.masters.designspace import Designspace
 from glyphspline.readers import Source
 from glyphspline.readers.ufo import Ufo
@@ -188,6 +189,26 @@ def test_a_component_keeps_the_masters_that_the_glyph_has_not(space: Path) -> No
     assert points.tolist() == [[25, 8], [185, 8], [185, 718], [25, 718]]
 
 
+def test_mirrored_components_keep_their_ink_in_all_masters(space: Path) -> None:
+    """They have the points that they have in a UFO, and run as they did before they were mirrored."""
+    for style in ("Light", "Regular", "Bold", "Narrow"):
+        change(space, style, "m", components(("c", (-1, 0, 0, 1, 500, 0))))
+        change(space, style, "w", components(("m", (1, 0, 0, -1, 0, 90))))
+    source, ufo = open_source(space), open_source(space.with_name("Regular.ufo"))
+    for name in ("m", "w"):
+        drawn = ufo.outline(name).contours
+        for contour, expected in zip(source.outline(name).contours, drawn, strict=True):
+            assert sorted(contour.points.tolist()) == sorted(expected.points.tolist())
+            assert polygon_area(contour.points) == pytest.approx(polygon_area(expected.points))
+    areas = [[polygon_area(each.points) for each in source.outline(name).contours] for name in "cmw"]
+    assert np.sign(areas[0]).tolist() == np.sign(areas[1]).tolist() == np.sign(areas[2]).tolist()
+
+
+def polygon_area(points: Any) -> float:
+    x, y = np.transpose(points)
+    return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
+
+
 def test_a_named_instance_is_a_location(space: Path) -> None:
     assert corners(open_source(space, location="semi"), "o")[2] == [160, 710]
 
@@ -320,6 +341,7 @@ unitsPerEm = 1000;
 
 def test_a_glyphs_file_is_a_designspace(tmp_path: Path) -> None:
     pytest.importorskip("glyphsLib")
+    pytest.importorskip("ufo2ft")
     path = tmp_path / "strokes.glyphs"
     path.write_text(GLYPHS)
     source = open_source(path, location={"wght": 500})
@@ -333,3 +355,61 @@ def test_a_glyphs_file_is_a_designspace(tmp_path: Path) -> None:
     path.write_text("{ .appVersion = ")
     with pytest.raises(FontError, match=r"strokes\.glyphs: a broken Glyphs file"):
         open_source(path)
+
+
+CORNER = """{
+.appVersion = "3260";
+.formatVersion = 3;
+familyName = Serifs;
+fontMaster = ({ id = m01; name = Regular; });
+glyphs = (
+{
+glyphname = I;
+layers = ({
+hints = ({ name = _corner.serif; origin = (0,0); type = Corner; });
+layerId = m01;
+shapes = ({ closed = 1; nodes = ((0,0,l),(100,0,l),(100,700,l),(0,700,l)); });
+width = 600;
+});
+unicode = 73;
+},
+{
+glyphname = H;
+layers = ({
+hints = ({ name = _cap.round; origin = (0,0); type = Cap; });
+layerId = m01;
+shapes = ({ closed = 1; nodes = ((0,0,l),(100,0,l),(100,700,l),(0,700,l)); });
+width = 600;
+});
+unicode = 72;
+},
+{
+glyphname = _corner.serif;
+layers = ({
+layerId = m01;
+shapes = ({ closed = 0; nodes = ((0,60,l),(-60,20,l),(-60,0,l),(30,0,l)); });
+width = 600;
+});
+}
+);
+unitsPerEm = 1000;
+}
+"""
+
+
+def test_corner_components_are_applied_and_caps_are_named(tmp_path: Path) -> None:
+    """A stem gets a serif at its first node; what is then drawn does not go back, as it would be applied twice."""
+    pytest.importorskip("glyphsLib")
+    pytest.importorskip("ufo2ft")
+    path = tmp_path / "serifs.glyphs"
+    path.write_text(CORNER)
+    source = open_source(path)
+    assert isinstance(source, Designspace)
+    serif = [[0, 60], [-60, 20], [-60, 0], [30, 0]]
+    assert corners(source, "H") == [[0, 700], [0, 0], [100, 0], [100, 700]]
+    assert corners(source, "I") == [[0, 700], *serif, [100, 0], [100, 700]]
+    assert [source.outline(name).unread for name in "HI"] == [("cap components",), ()]
+    new = [New(name, [source.outline(name).contours], source.drawings(name)) for name in "I"]
+    found = write_back(source, new, 0, dry=True)
+    assert not found.names
+    assert "corner components" in found.kept["I"]

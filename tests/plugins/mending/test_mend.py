@@ -221,6 +221,7 @@ def sources(folder: Path) -> Path:
 def glyphs_file(folder: Path) -> Path:
     """The same as a Glyphs file."""
     glyphsLib = pytest.importorskip("glyphsLib")
+    pytest.importorskip("ufo2ft")
     from fontTools.designspaceLib import DesignSpaceDocument
 
     glyphsLib.to_glyphs(DesignSpaceDocument.fromfile(sources(folder))).save(str(folder / "Mine.glyphs"))

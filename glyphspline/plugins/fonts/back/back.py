@@ -150,6 +150,10 @@ def _copied(source: EditableSource, folder: Path) -> Path:
 def _edited(source: EditableSource, glyphs: Iterable[New], digits: int, edit: Edit, dry: bool) -> Written:
     found = Written()
     for new in glyphs:
+        if new.name in source.others:
+            found.kept[new.name] = why = source.others[new.name]
+            found.contours |= {(new.name, index): why for index in range(len(new.contours))}
+            continue
         changes, stays = _changes(source, new, digits, edit)
         if stays:
             found.kept[new.name] = "; ".join([f"contour {number} {why}" for number, _, why in stays])
