@@ -80,7 +80,8 @@ class ContourPen(BasePen):  # type: ignore[misc, unused-ignore]
         own: of each contour that is drawn itself, not by a component, the number in ``stacks``; None: left out.
         repeats: of each contour; see :class:`.Contours`.
         snapped: the largest distance of points that are taken to coincide; see :class:`.Outline`.
-        opens: whether open paths become open contours, as in sources. strokes: whether closed ones that retrace themselves do.
+        opens: whether open paths become open contours, as in sources. strokes: whether closed ones that retrace
+            themselves do.
     """
 
     skipMissingComponents = False
