@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..curves.bezier import evaluate
+from ..curves.bezier import derivative_points, evaluate
 from ..curves.bspline import bezier_pieces, full_knots, span_controls
 from ..curves.pairing import SHARPNESS, pair_stretches
 from ..outlines.contour_arrays import ContourArrays, end_to_end, lines_and_cubics, offsets_of
@@ -29,15 +29,17 @@ FEWEST, SHORT, TURNING = 24, 4.0, 1 / 3
 """A trace has at least this many segments. At so large a share of its joints it turns by the corner angle beside a
 segment shorter than this many tolerances."""
 
-SHARES = (0.5, 0.65)
-"""Of the tolerance, how far calm contours may be from traces, in turn."""
+SHARES, MOST = (0.5, 0.65, 0.8), 0.9
+"""Of the tolerance, how far samples of traces may be from calm contours, in turn, and how far the certificate may say
+that these are: the rest is left to the fit."""
 
 SHORTEST = 16.0
 """Spans of calm contours are longer than this many times that distance. They then round corners of less than some 40
 degrees, and bends of a radius of less than ten times the distance are corners."""
 
-STRAIGHT = 0.5
-"""A line takes the place of a spline where it is within this share of the distance."""
+STRAIGHT, EXACT = 1.5, 0.1
+"""A line takes the place of a spline of one span where it is this many times as far off, or within this share of the
+distance."""
 
 MOST_SAMPLES, MOST_ROUNDS = 6_000, 60
 """Samples of a trace, and rounds of cutting it, at most."""
@@ -110,11 +112,16 @@ def are_traces(contours: ContourArrays, corner_angle: float, tolerance: float) -
 
 
 def calm_contour(cubics: FloatArray, tolerance: float) -> tuple[ContourArrays, float] | None:
-    """The calm contour of a trace (m, 4, 2), and its certified distance; None if it takes too much of the tolerance."""
+    """The calm contour of a trace (m, 4, 2), and its certified distance; None if it takes too much of the tolerance.
+
+    Where it has many pieces it may follow noise, and one farther off with less than half of them takes its place.
+    """
+    best: tuple[ContourArrays, float] | None = None
     for share in SHARES:
-        near = share * tolerance
-        samples = even_samples(cubics, near)
-        stretches = calmed(samples, near)
+        near, fewest = share * tolerance, np.inf if best is None else len(best[0].degrees)
+        if fewest <= FEWEST:
+            break
+        stretches = calmed(even_samples(cubics, near), near)
         if stretches is None:
             continue
         pieces = np.concatenate([each.cubics for each in stretches])
@@ -123,9 +130,9 @@ def calm_contour(cubics: FloatArray, tolerance: float) -> tuple[ContourArrays, f
         anchors = np.column_stack([np.arange(len(pieces) + 1.0), np.append(places, places[0] + len(cubics))])
         parts = ((rows, np.array([0, len(rows)])) for rows in (pieces, cubics, anchors))
         bound = float(pair_stretches(*parts, SHARPNESS * tolerance, near)[0].max())
-        if bound <= (1 + SHARES[-1]) / 2 * tolerance:
-            return end_to_end([lines_and_cubics(pieces, lines)]), bound
-    return None
+        if bound <= MOST * tolerance and len(pieces) < fewest / 2:
+            best = end_to_end([lines_and_cubics(pieces, lines)]), bound
+    return best
 
 
 def even_samples(cubics: FloatArray, near: float) -> Samples:
@@ -172,18 +179,17 @@ def stretch(samples: Samples, a: int, b: int, closed: bool, near: float) -> Stre
     places = samples.places[index % N] + turn * samples.places[N]
     t = samples.passed[index % N] + turn * samples.passed[N]
     t -= t[0]
-    off = from_chord(points, 0, b - a)
-    if not closed and off.max() <= STRAIGHT * near:
-        thirds = np.linspace(0.0, 1.0, 4)[:, None]
-        return Stretch(((1 - thirds) * points[0] + thirds * points[-1])[None], places[:1], True)
     knots = np.linspace(0.0, t[-1], 9 if closed else 2)
     while True:
         cubics = least_squares(points, t, knots, closed)
         span = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, len(knots) - 2)
         share = (t - knots[span]) / (knots[span + 1] - knots[span])
-        errors = np.hypot(*(evaluate(cubics[span], share) - points).T)
+        errors = distances(cubics[span], share, points)
         worst = np.zeros(len(knots) - 1)
         np.maximum.at(worst, span, errors)
+        if len(cubics) == 1 and from_chord(points).max() <= min(near, max(STRAIGHT * worst[0], EXACT * near)):
+            thirds = np.linspace(0.0, 1.0, 4)[:, None]
+            return Stretch(((1 - thirds) * points[0] + thirds * points[-1])[None], places[:1], True)
         if worst.max() <= near:
             return Stretch(cubics, np.interp(knots[:-1], t, places), False)
         halves = np.flatnonzero((worst > near) & (np.diff(knots) >= 2 * SHORTEST * near))
@@ -196,7 +202,7 @@ def corner_near(points: FloatArray, t: FloatArray, worst: int, closed: bool, nea
     """The sample that stands out farthest from the chord between those beside it, near one where a spline fails."""
     reach, n = SHORTEST * near, len(points) - 1
     if not closed and t[-1] <= 2 * reach:
-        return int(np.clip(from_chord(points, 0, n).argmax(), 1, n - 1))
+        return int(np.clip(from_chord(points).argmax(), 1, n - 1))
     tried = np.flatnonzero(np.abs(t - t[worst]) <= 2 * reach)
     tried = tried[(tried > 0) & (tried < n)]
     sides = (np.interp(t[tried] + way * reach / 2, t, np.arange(n + 1.0)).astype(np.int64) for way in (-1, 1))
@@ -205,9 +211,16 @@ def corner_near(points: FloatArray, t: FloatArray, worst: int, closed: bool, nea
     return int(tried[heights.argmax()])
 
 
-def from_chord(points: FloatArray, a: int, b: int) -> FloatArray:
-    """Distances of points (n, 2) from the chord between two of them, or from its first end if it has no length."""
-    (x, y), (dx, dy) = points[b] - points[a], (points - points[a]).T
+def distances(cubics: FloatArray, share: FloatArray, points: FloatArray) -> FloatArray:
+    """How far points (n, 2) are from curves (n, 4, 2), across these; half as far where they lie ahead or behind."""
+    (x, y), (dx, dy) = (evaluate(cubics, share) - points).T, evaluate(derivative_points(cubics), share).T
+    across = np.abs(x * dy - y * dx) / np.maximum(np.hypot(dx, dy), 1e-300)
+    return np.asarray(np.maximum(across, np.hypot(x, y) / 2))
+
+
+def from_chord(points: FloatArray) -> FloatArray:
+    """Distances of points (n, 2) from the chord between the first and the last, or from these if they are one."""
+    (x, y), (dx, dy) = points[-1] - points[0], (points - points[0]).T
     size = np.hypot(x, y)
     if size == 0.0:
         return np.asarray(np.hypot(dx, dy))
