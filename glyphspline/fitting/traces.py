@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -25,7 +26,7 @@ from .measures import distance_columns
 from .options import Options
 from .results import ConvertedContours, assembled
 
-FEWEST, SHORT, TURNING = 24, 4.0, 1 / 3
+FEWEST, SHORT, TURNING = 24, 1.5, 1 / 3
 """A trace has at least this many segments. At so large a share of its joints it turns by the corner angle beside a
 segment shorter than this many tolerances."""
 
@@ -41,8 +42,8 @@ STRAIGHT, EXACT = 1.5, 0.1
 """A line takes the place of a spline of one span where it is this many times as far off, or within this share of the
 distance."""
 
-MOST_SAMPLES, MOST_ROUNDS = 6_000, 60
-"""Samples of a trace, and rounds of cutting it, at most."""
+MOST_SAMPLES = 6_000
+"""Samples of a trace, at most."""
 
 
 class Samples(NamedTuple):
@@ -66,9 +67,7 @@ class Stretch(NamedTuple):
     line: bool
 
 
-def calming(
-    fits: Callable[[float], Fits], contours: ContourArrays, options: Options, tolerance: float
-) -> Fits:  # fmt: skip
+def calming(fits: Callable[[float], Fits], contours: ContourArrays, options: Options, tolerance: float) -> Fits:
     """The fits of a mode within a tolerance, with traces among the contours made calm before they are fitted.
 
     Args:
@@ -128,8 +127,8 @@ def calm_contour(cubics: FloatArray, tolerance: float) -> tuple[ContourArrays, f
         lines = np.concatenate([np.full(len(each.cubics), each.line) for each in stretches])
         places = np.maximum.accumulate(np.concatenate([each.places for each in stretches]))
         anchors = np.column_stack([np.arange(len(pieces) + 1.0), np.append(places, places[0] + len(cubics))])
-        parts = ((rows, np.array([0, len(rows)])) for rows in (pieces, cubics, anchors))
-        bound = float(pair_stretches(*parts, SHARPNESS * tolerance, near)[0].max())
+        calm, trace, pairs = ((rows, np.array([0, len(rows)])) for rows in (pieces, cubics, anchors))
+        bound = float(pair_stretches(calm, trace, pairs, SHARPNESS * tolerance, near)[0].max())
         if bound <= MOST * tolerance and len(pieces) < fewest / 2:
             best = end_to_end([lines_and_cubics(pieces, lines)]), bound
     return best
@@ -153,13 +152,16 @@ def even_samples(cubics: FloatArray, near: float) -> Samples:
 
 
 def calmed(samples: Samples, near: float) -> list[Stretch] | None:
-    """A trace as stretches between corners, each within a distance of its samples; None if there are too many."""
+    """A trace as stretches between corners, each within a distance of its samples.
+
+    None if it needs so many that they would be shorter than half a span: its noise is farther off.
+    """
     corners = list[int]()
     done = dict[tuple[int, int], Stretch]()
-    for _ in range(MOST_ROUNDS):
+    while len(corners) * SHORTEST * near <= 2 * samples.passed[-1]:
         ends = [*corners, corners[0] + len(samples.points)] if corners else [0, len(samples.points)]
         added = set[int]()
-        for a, b in zip(ends[:-1], ends[1:], strict=True):
+        for a, b in pairwise(ends):
             if (a, b) not in done:
                 found = stretch(samples, a, b, not corners, near)
                 if isinstance(found, int):
@@ -167,7 +169,7 @@ def calmed(samples: Samples, near: float) -> list[Stretch] | None:
                 else:
                     done[a, b] = found
         if not added:
-            return [done[pair] for pair in zip(ends[:-1], ends[1:], strict=True)]
+            return [done[pair] for pair in pairwise(ends)]
         corners = sorted({*corners, *added})
     return None
 
@@ -237,11 +239,11 @@ def least_squares(points: FloatArray, t: FloatArray, knots: FloatArray, closed: 
     full, which = full_knots(knots, 3, closed), span_controls(k, 3, closed)
     span = np.clip(np.searchsorted(knots, t, side="right") - 1, 0, k - 1)
     values, index, n = basis(full, span, t), which[span], int(which.max()) + 1
-    A = np.bincount(
-        (index[:, :, None] * n + index[:, None]).ravel(), (values[:, :, None] * values[:, None]).ravel(), n * n
-    )
-    A = A.reshape(n, n) + 1e-9 * np.eye(n)
-    b = np.column_stack([np.bincount(index.ravel(), (values * column[:, None]).ravel(), n) for column in points.T])
+    pairs, products = index[:, :, None] * n + index[:, None], values[:, :, None] * values[:, None]
+    A: FloatArray = np.bincount(pairs.ravel(), products.ravel(), n * n).reshape(n, n).astype(np.float64)
+    A += 1e-9 * np.eye(n)
+    sums = [np.bincount(index.ravel(), (values * column[:, None]).ravel(), n) for column in points.T]
+    b: FloatArray = np.column_stack(sums).astype(np.float64)
     if not closed:
         for end, point in ((0, points[0]), (n - 1, points[-1])):
             A[end] = 0.0
