@@ -113,15 +113,14 @@ def are_traces(contours: ContourArrays, corner_angle: float, tolerance: float) -
 def calm_contour(cubics: FloatArray, tolerance: float) -> tuple[ContourArrays, float] | None:
     """The calm contour of a trace (m, 4, 2), and its certified distance; None if it takes too much of the tolerance.
 
-    Where it has many pieces it may follow noise, and one farther off with less than half of them takes its place.
+    Where it has corners these may be noise, and one farther off with less than half of them takes its place.
     """
     best: tuple[ContourArrays, float] | None = None
+    fewest = np.inf
     for share in SHARES:
-        near, fewest = share * tolerance, np.inf if best is None else len(best[0].degrees)
-        if fewest <= FEWEST:
-            break
+        near = share * tolerance
         stretches = calmed(even_samples(cubics, near), near)
-        if stretches is None:
+        if stretches is None or not len(stretches) < fewest / 2:
             continue
         pieces = np.concatenate([each.cubics for each in stretches])
         lines = np.concatenate([np.full(len(each.cubics), each.line) for each in stretches])
@@ -129,8 +128,10 @@ def calm_contour(cubics: FloatArray, tolerance: float) -> tuple[ContourArrays, f
         anchors = np.column_stack([np.arange(len(pieces) + 1.0), np.append(places, places[0] + len(cubics))])
         calm, trace, pairs = ((rows, np.array([0, len(rows)])) for rows in (pieces, cubics, anchors))
         bound = float(pair_stretches(calm, trace, pairs, SHARPNESS * tolerance, near)[0].max())
-        if bound <= MOST * tolerance and len(pieces) < fewest / 2:
-            best = end_to_end([lines_and_cubics(pieces, lines)]), bound
+        if bound <= MOST * tolerance:
+            best, fewest = (end_to_end([lines_and_cubics(pieces, lines)]), bound), len(stretches)
+        if fewest <= 2:
+            break
     return best
 
 
