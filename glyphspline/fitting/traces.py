@@ -70,6 +70,8 @@ class Stretch(NamedTuple):
 def calming(fits: Callable[[float], Fits], contours: ContourArrays, options: Options, tolerance: float) -> Fits:
     """The fits of a mode within a tolerance, with traces among the contours made calm before they are fitted.
 
+    Where that saves no segments, as the noise exceeds the tolerance, the fit of the trace itself counts.
+
     Args:
         fits: of the mode, from a tolerance. contours: all that are to be fitted.
     """
@@ -78,20 +80,28 @@ def calming(fits: Callable[[float], Fits], contours: ContourArrays, options: Opt
         return own
 
     def fit(given: ContourArrays, attempt: int) -> ConvertedContours:
-        parts: list[tuple[ConvertedContours, int]] = []
-        others, traces = own.fit(given, attempt), are_traces(given, options.corner_angle, tolerance)
-        for c in range(given.num_contours):
-            found = calm_contour(contour_cubics(given, c), tolerance) if traces[c] else None
-            parts.append((others, c))
-            if found is not None:
-                calm, bound = found
-                result = fits(tolerance - bound).fit(calm, attempt)
-                bounds = [own_bound + bound for own_bound in result.measures["deviation_bound"]]
-                columns = distance_columns(bounds, bounds, tolerance)
-                parts[-1] = replace(result, source=given.part(c, c + 1), measures={**result.measures, **columns}), 0
+        plain, traces = own.fit(given, attempt), are_traces(given, options.corner_angle, tolerance)
+        parts = [(plain, c) for c in range(given.num_contours)]
+        for c in np.flatnonzero(traces).tolist():
+            found, most = calm_contour(contour_cubics(given, c), tolerance), segments(parts[c])
+            if found is None or len(found[0].degrees) >= most:
+                continue
+            calm, bound = found
+            result = fits(tolerance - bound).fit(calm, attempt)
+            bounds = [own_bound + bound for own_bound in result.measures["deviation_bound"]]
+            columns = distance_columns(bounds, bounds, tolerance)
+            result = replace(result, source=given.part(c, c + 1), measures={**result.measures, **columns})
+            if segments((result, 0)) < most:
+                parts[c] = result, 0
         return assembled(parts)
 
     return own._replace(fit=fit)
+
+
+def segments(result: tuple[ConvertedContours, int]) -> float:
+    """The number of segments of a contour's result; infinite beyond the tolerance."""
+    measures, c = result[0].measures, result[1]
+    return float(measures["segments"][c]) if measures["within_tolerance"][c] else np.inf
 
 
 def are_traces(contours: ContourArrays, corner_angle: float, tolerance: float) -> BoolArray:
