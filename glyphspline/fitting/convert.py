@@ -209,6 +209,7 @@ def _convert_closed(
     from .closed_curves import convert_fixed
     from .faithful import Fits, faithful
     from .measures import check_coordinates
+    from .traces import calming
 
     check_coordinates(contours, np.inf if options.is_fixed else tolerance)
     if options.is_fixed and not options.measure:
@@ -216,19 +217,17 @@ def _convert_closed(
     if options.is_fixed:
         fits = Fits(1, lambda given, _: convert_fixed(given, options, tolerance), keeps_collapsed=False)
     elif options.is_for_fonts:
-        fits = hooks.service("g2_fits")(options, tolerance, em)
-    elif options.corners == "sharp":
-        from .sharp.sharp_fit import sharp_fits
-
-        fits = sharp_fits(options, tolerance, em)
+        fits = calming(lambda near: hooks.service("g2_fits")(options, near, em), contours, options, tolerance)
     else:
+        from .sharp.sharp_fit import sharp_fits
         from .smooth.smooth_fit import smooth_fits
 
-        fits = smooth_fits(options, tolerance)
-        if options.hold_corners:
-            from .sharp.sharp_fit import sharp_fits
-
-            fits = fits._replace(instead=sharp_fits(options, tolerance, em))
+        sharp = calming(lambda near: sharp_fits(options, near, em), contours, options, tolerance)
+        if options.corners == "sharp":
+            fits = sharp
+        else:
+            fits = calming(lambda near: smooth_fits(options, near), contours, options, tolerance)
+            fits = fits._replace(instead=sharp if options.hold_corners else None)
     return faithful(contours, glyphs, fits, options, tolerance)
 
 

@@ -53,7 +53,7 @@ class Measures:
         vertices: of the polygon. segments: Bézier segments of the result. numbers: coordinates to store.
         iterations, residual, converged, rate_bound, fallbacks: of the interpolation (worst of several arcs).
         deviation: largest distance seen between points of the result and of the source that the certificate pairs. It
-            is near the two-sided distance, and mostly a little below it.
+            is near the two-sided distance, and mostly a little below it. Of traces it is the bound.
         deviation_bound: certified bound of that distance, with what the reader snapped.
         within_tolerance: whether the bound (or, failing one, the measure) is within the tolerance.
         overshoot: largest distance of the curve outside the polygon's convex hull. This and what follows is measured on
