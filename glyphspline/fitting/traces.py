@@ -75,7 +75,7 @@ def calming(fits: Callable[[float], Fits], contours: ContourArrays, options: Opt
     Args:
         fits: of the mode, from a tolerance. contours: all that are to be fitted.
     """
-    own = fits(tolerance)
+    own, known = fits(tolerance), dict[bytes, tuple[ContourArrays, float] | None]()
     if not are_traces(contours, options.corner_angle, tolerance).any():
         return own
 
@@ -83,7 +83,10 @@ def calming(fits: Callable[[float], Fits], contours: ContourArrays, options: Opt
         plain, traces = own.fit(given, attempt), are_traces(given, options.corner_angle, tolerance)
         parts = [(plain, c) for c in range(given.num_contours)]
         for c in np.flatnonzero(traces).tolist():
-            found, most = calm_contour(contour_cubics(given, c), tolerance), segments(parts[c])
+            cubics, most = contour_cubics(given, c), segments(parts[c])
+            if (trace := cubics.tobytes()) not in known:  # or else it was calmed for an attempt before
+                known[trace] = calm_contour(cubics, tolerance)
+            found = known[trace]
             if found is None or len(found[0].degrees) >= most:
                 continue
             calm, bound = found
@@ -165,11 +168,11 @@ def even_samples(cubics: FloatArray, near: float) -> Samples:
 def calmed(samples: Samples, near: float) -> list[Stretch] | None:
     """A trace as stretches between corners, each within a distance of its samples.
 
-    None if it needs so many that they would be shorter than half a span: its noise is farther off.
+    None if it needs so many that they would be shorter than two spans: its noise is farther off.
     """
     corners = list[int]()
     done = dict[tuple[int, int], Stretch]()
-    while len(corners) * SHORTEST * near <= 2 * samples.passed[-1]:
+    while len(corners) * SHORTEST * near <= samples.passed[-1] / 2:
         ends = [*corners, corners[0] + len(samples.points)] if corners else [0, len(samples.points)]
         added = set[int]()
         for a, b in pairwise(ends):
