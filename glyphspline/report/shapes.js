@@ -69,8 +69,9 @@
           start = points[0];
           contours.push((pieces = []));
         } else {
-          const last = pieces[pieces.length - 1], turned = last?.length === MIRRORED[command] ? last[last.length - 2] : at;
-          pieces.push([at, ...(command in MIRRORED ? [[2 * at[0] - turned[0], 2 * at[1] - turned[1]]] : []), ...points]);
+          const mirrored = command in MIRRORED, last = pieces[pieces.length - 1];
+          const turned = mirrored && last?.length === MIRRORED[command] ? last[last.length - 2] : at;
+          pieces.push([at, ...(mirrored ? [[2 * at[0] - turned[0], 2 * at[1] - turned[1]]] : []), ...points]);
         }
         at = points[points.length - 1];
       }

@@ -53,8 +53,7 @@ class Font(Source):
         family, style: from the name table; by default the file's name and "Regular".
         metrics: units per em, ascender and descender (the typographic ones if the font says so), at the location.
         glyph_names: all glyphs in glyph index order, made unique where the font repeats a name or has none.
-        cmap: code point to glyph name, from the table that HarfBuzz reads. Symbols have code points from U+F000 on;
-            texts may ask for them by those from U+0000, too.
+        cmap: code point to glyph name, from the table that HarfBuzz reads; of a symbol font, from U+F000 on.
     """
 
     def __init__(self, path: Path, data: bytes, face_index: int, location: Location) -> None:

@@ -227,7 +227,7 @@ def content(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-FONTS = sorted(str(path) for path in FONT.parent.glob("kouzan-*"))
+FONTS = sorted(str(path) for path in FONT.parent.glob("kouzan-*") if path.suffix != ".csv")
 LETTERS = DatasetSpec(points=16, options=None)
 
 
