@@ -62,7 +62,7 @@ class Options:
     Example:
         >>> from glyphspline import Options
         >>> Options(tolerance=2.0).words
-        'variant 2, margin 0.02, corners sharp, continuity c2, tolerance 2, effort fast'
+        'variant 2, margin 0.02, corners sharp, tolerance 2, effort fast'
         >>> Options(step=20.0).corners
         'smooth'
         >>> Options(step=20.0, count=9)
@@ -146,9 +146,8 @@ class Options:
     @property
     def words(self) -> str:
         """What a caption says of a conversion, in the words of the command line; only what made a difference."""
-        sharp = self.corners == "sharp"
-        said = [] if self.is_for_fonts else [f"variant {self.variant}", f"margin {self.margin:g}"]
-        said += [f"corners {self.corners}", *([f"continuity {self.continuity}"] if sharp else [])]
+        method = [f"variant {self.variant}", f"margin {self.margin:g}", f"corners {self.corners}"]
+        said = [f"corners {self.corners}", f"continuity {self.continuity}"] if self.is_for_fonts else method
         given = [name for name in ("tolerance", "step", "count") if getattr(self, name) is not None]
         said += [f"{name} {getattr(self, name):g}" for name in given] or [f"tolerance {self.thousandths:g}/1000 em"]
         said += [] if self.is_fixed else [f"effort {self.effort}"]

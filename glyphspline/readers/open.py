@@ -18,6 +18,7 @@ from .opentype.font import open_faces, open_font
 from .source import Location, Source, opening
 
 STDIN = "-"
+ZIPPED = b"PK\x03\x04"
 UTF8 = b"\xef\xbb\xbf"
 """The mark with which a text may begin."""
 
@@ -83,7 +84,9 @@ def reader_of(path: str | Path) -> Reader | None:
         if reader.recognises(path, head):
             return reader
     if path.is_dir():
-        raise FontError("a folder that is no UFO and holds no SVG drawings", font=str(path))
+        raise FontError("a folder with neither fonts, SVG drawings nor a UFO's metainfo.plist", font=str(path))
+    if head.startswith(ZIPPED):
+        raise FontError("a zipped folder, as .ufoz is: unzip it first", font=str(path))
     if is_xml(head):
         raise FontError("XML that nothing here reads" + hooks.away_words(), font=str(path))
     return None

@@ -119,9 +119,7 @@ class Ufo(EditableSource):
             }
 
     def _bytes(self) -> Iterable[bytes]:
-        for file in _files(self.path):
-            content = file.read_bytes()
-            yield f"{file.relative_to(self.path).as_posix()}\0{len(content)}\0".encode() + content
+        return folder_bytes(self.path)
 
     def _outline(self, head: Head) -> Outline:
         pen, glyph = self._drawn(head.name)
@@ -205,6 +203,13 @@ def components_of(masters: Iterable[GlyphSet]) -> dict[str, set[str]]:
             if parts:
                 found.setdefault(name, set()).update(parts)
     return found
+
+
+def folder_bytes(folder: Path) -> Iterator[bytes]:
+    """All files of a folder with their names, for a checksum."""
+    for file in _files(folder):
+        content = file.read_bytes()
+        yield f"{file.relative_to(folder).as_posix()}\0{len(content)}\0".encode() + content
 
 
 def _files(folder: Path) -> Iterator[Path]:

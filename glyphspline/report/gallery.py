@@ -33,7 +33,7 @@ SCRIPTS = (
 LAYERS = {
     "source": ("Source", "s"), "result": ("Result", "r"), "polygon": ("Polygon", "p"), "vertices": ("Vertices", "v"),
     "control": ("Control polygon", "k"), "source-comb": ("Source's comb", "e"), "comb": ("Result's comb", "c"),
-    "corners": ("Teeth in corners", "n"), "colour": ("Colour", "l"),
+    "corners": ("Teeth in corners", "n"), "colour": ("Colour", "l"), "handles": ("Handles", "h"),
 }  # fmt: skip
 """The layers that can be hidden: name and key."""
 

@@ -28,6 +28,7 @@
         if (on.has("colour")) group.append(GS.coloured(contours, em, run.scale));
       }
     }
+    if (on.has("handles")) group.append(...GS.handleLines(GS.contours(drawing.result || drawing.source).flat()));
     if (drawing.control) group.append(GS.svg("path", { class: "control", d: drawing.control }));
     if (drawing.polygon) {
       group.append(GS.svg("path", { class: "polygon", d: drawing.polygon }));

@@ -10,9 +10,11 @@
   /** [left, right, top, bottom] of points. */
   GS.ends = (points) => [0, 1].flatMap((k) => [Math.min(...points.map((p) => p[k])), Math.max(...points.map((p) => p[k]))]);
 
-  /** Show what is within `half` of a point. */
-  GS.showNear = (picture, x, y, half) =>
-    picture.setAttribute("viewBox", [x - half, y - half, 2 * half, 2 * half].map((value) => +value.toFixed(2)).join(" "));
+  /** Show what is within `half` of a point, or less of it: `data-zoom`. */
+  GS.showNear = (picture, x, y, half) => {
+    const own = half / (picture.dataset.zoom || 1);
+    picture.setAttribute("viewBox", [x - own, y - own, 2 * own, 2 * own].map((value) => +value.toFixed(2)).join(" "));
+  };
 
   /** Cards of the rows that have a drawing, and a table of all. `draw(card, row)` when it comes into view; its caption has a
    *  `title(row)`, a sentence and lines: `caption(row)`. `heads` of the table, those that are `numeric`, and `cells(row)` by head.
@@ -29,15 +31,21 @@
 
     const kindOf = (row) => GS.element("span", { class: `kind ${row.level}` }, row.kind);
     const cardOf = (row) => {
-      const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` },
-        GS.svg("svg", { "aria-hidden": "true" }));
+      const picture = GS.svg("svg", { "aria-hidden": "true" });
+      const button = GS.element("button", { type: "button", "aria-label": `${row.glyph}: show the whole glyph, or the place` }, picture);
+      const zoom = (factor) => { picture.dataset.zoom = factor * (picture.dataset.zoom || 1); draw(card, row); };
+      const zooms = [["+", "Zoom in", 1.6], ["\u2212", "Zoom out", 1 / 1.6]].map(([text, label, factor]) => {
+        const one = GS.element("button", { type: "button", "aria-label": `${row.glyph}: ${label}` }, text);
+        one.addEventListener("click", () => zoom(factor));
+        return one;
+      });
       const [sentence, ...lines] = caption(row);
       const place = `contour ${row.contour}, segment ${row.segment}, at ${GS.point(row)}`;
       const card = GS.element("figure", { class: "card", role: "listitem" }, button, GS.element("figcaption", {},
-        GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row), ` ${title(row)}`), GS.element("div", {}, sentence),
+        GS.element("div", { class: "zooms" }, ...zooms), GS.element("div", {}, GS.element("b", {}, row.glyph), " ", kindOf(row), ` ${title(row)}`), GS.element("div", {}, sentence),
         ...[place, ...lines].filter(Boolean).map((line) => GS.element("p", {}, line)), GS.element("p", { class: "comb-scale" })));
       card.row = row;
-      button.addEventListener("click", () => { card.classList.toggle("whole"); draw(card, row); });
+      button.addEventListener("click", () => { card.classList.toggle("whole"); delete picture.dataset.zoom; draw(card, row); });
       watcher.observe(card);
       return card;
     };

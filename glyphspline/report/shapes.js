@@ -273,6 +273,13 @@
   GS.handles = (pieces) => pieces.flatMap((p) =>
     (p.length === 2 ? [] : p.length === 3 ? [[p[0], p[1]], [p[2], p[1]]] : [[p[0], p[1]], [p[3], p[2]]]));
 
+  /** The same drawn, with a dot at each end. */
+  GS.handleLines = (pieces) => {
+    const handles = GS.handles(pieces);
+    return [GS.svg("path", { class: "handle-lines", d: handles.map(([a, b]) => GS.join(a, b)).join("") }),
+      GS.dots(handles.map(([, end]) => end), "handle-ends")];
+  };
+
   /** The curvature, in 1/unit, of a full tooth: most teeth in view are shorter. */
   GS.scaleNear = (contours, em, [x, y, half]) => {
     const found = GS.frames(contours, em).flat().filter(({ point: [a, b] }) => Math.abs(a - x) < half && Math.abs(b - y) < half)

@@ -20,8 +20,8 @@ def find_fonts(inputs: Iterable[str]) -> list[Path]:
     """The font files of the inputs, each once, sorted by path.
 
     Args:
-        inputs: files, UFO folders, other folders (searched to the bottom; one without fonts that holds SVG drawings is
-            a font of these), globs (``**`` too), URLs of fonts, folders and globs, ``-`` for standard input, and
+        inputs: files, UFO folders, other folders (searched to the bottom; one without fonts is itself a source, as one
+            of SVG drawings is), globs (``**`` too), URLs of fonts, folders and globs, ``-`` for standard input, and
             ``@list``: a text file with one of these a line, relative to where the command was called; empty lines and
             lines with ``#`` are ignored. What is behind a URL is copied to the user's cache.
 
@@ -44,7 +44,7 @@ def _found(item: str) -> Iterator[Path]:
     elif path.is_dir():
         fonts = [file for file in path.rglob("*") if file.suffix.lower() in SUFFIXES and file.is_file()]
         fonts += [folder for folder in path.rglob("*.ufo") if is_ufo(folder)]
-        yield from fonts or ([path] if next(path.glob("*.svg*"), None) else [])
+        yield from fonts or [path]  # drawings, or what its reader says of it
     elif path.exists():
         yield path
     else:

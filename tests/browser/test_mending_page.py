@@ -65,6 +65,10 @@ def test_before_and_after_are_drawn_where_it_was_worst(page: Any, mended: Path) 
     assert paths[0] != paths[1]
     assert card.locator(".source-comb path").count() > 1
     assert card.locator(".comb path").count() > 1
+    colours = "(paths) => [...new Set(paths.map((path) => getComputedStyle(path).stroke))]"
+    assert len(card.locator(".source-comb path:not(.tips, .cut)").evaluate_all(colours)) == 1, (
+        "not those of the result's"
+    )
     assert card.locator(".moves").get_attribute("d").count("M") >= 1
     assert page.locator("#rows tr").count() == 2
     assert "is beyond the tolerance: it takes" in page.locator("#rows tr").nth(1).inner_text()
@@ -94,8 +98,11 @@ def test_layers_kinds_and_names_are_chosen(page: Any, mended: Path) -> None:
     page.locator("label:has([data-layer='comb'])").click()
     assert not card.locator(".comb").first.is_visible()
     before = card.locator("svg").get_attribute("viewBox")
-    card.locator("button").click()
-    assert card.locator("svg").get_attribute("viewBox") != before
+    card.get_by_role("button", name="Zoom in").click()
+    near = card.locator("svg").get_attribute("viewBox")
+    assert float(near.split()[2]) == pytest.approx(float(before.split()[2]) / 1.6, abs=0.02)
+    card.locator("> button").click()
+    assert float(card.locator("svg").get_attribute("viewBox").split()[2]) > float(before.split()[2]), "the whole glyph"
     page.fill("#words", "b")
     page.wait_for_function("() => document.querySelectorAll('#rows tr').length === 1")
     assert page.locator("#rows td").first.inner_text() == "<b>"

@@ -43,10 +43,10 @@ def test_options_that_contradict_each_other_are_refused(wrong: dict[str, Any]) -
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        ({}, "variant 2, margin 0.02, corners sharp, continuity c2, tolerance 1/1000 em, effort fast"),
+        ({}, "variant 2, margin 0.02, corners sharp, tolerance 1/1000 em, effort fast"),
         (PRESETS["brush"], "variant 2, margin 0.02, corners smooth, tolerance 3/1000 em, effort fast"),
         ({"step": 20, "variant": 3}, "variant 3, margin 0.02, corners smooth, step 20"),
-        (PRESETS["type"], "variant 2, margin 0.02, corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
+        (PRESETS["type"], "variant 2, margin 0.02, corners sharp, tolerance 1/1000 em, effort best"),
         (
             {"corners": "sharp", "continuity": "g2", "tolerance": 0.5},
             "corners sharp, continuity g2, tolerance 0.5, effort fast",

@@ -13,16 +13,17 @@ import time
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
 
-from glyphspline.errors import GlyphsplineError, OutputError
+from glyphspline.errors import FontError, GlyphsplineError, OutputError
 from glyphspline.files import write_whole
 from glyphspline.fitting.convert import convert_many
 from glyphspline.fitting.options import Options
 from glyphspline.outlines.outline import Contour, Outline
-from glyphspline.readers import Font, open_font
+from glyphspline.readers import Font, open_font, open_source
 from glyphspline.runs import worker
 from glyphspline.runs.convert import convert_font, write_gallery
 from glyphspline.runs.file_names import LONGEST_NAME, file_names, folders_for
@@ -338,6 +339,21 @@ def test_fonts_are_found_in_folders_globs_and_lists(tree: Path) -> None:
     assert len(find_fonts([f"@{tree / 'list.txt'}"])) == 3
     with pytest.raises(GlyphsplineError, match="no such file"):
         find_fonts([str(tree / "missing.ttf")])
+
+
+@pytest.mark.parametrize("name", ["Mine.ufo", "empty"])
+def test_a_folder_without_fonts_is_named(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).mkdir()
+    (found,) = find_fonts([str(tmp_path / name)])
+    with pytest.raises(FontError, match=rf"{name}: a folder with neither fonts, SVG drawings nor a UFO's metainfo"):
+        open_source(found)
+
+
+def test_a_zipped_ufo_is_named(tmp_path: Path) -> None:
+    with ZipFile(tmp_path / "Mine.ufoz", "w") as file:
+        file.writestr("Mine.ufo/metainfo.plist", "")
+    with pytest.raises(FontError, match=r"Mine\.ufoz: a zipped folder"):
+        open_source(tmp_path / "Mine.ufoz")
 
 
 KILL_ME = """

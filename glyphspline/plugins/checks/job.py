@@ -15,6 +15,7 @@ from functools import cache
 from hashlib import blake2b
 from itertools import pairwise
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -217,6 +218,7 @@ class GlyphFindings(NamedTuple):
         score: how far all its kinks, turns and jumps are seen, in thousandths of an em, whatever is looked for and in
             whichever glyph they are reported; None if it could not be checked.
         kinks: along each axis, of it and the glyphs after it up to the next that has some, if joints are asked for.
+        repeated: by kind, the number of findings of contours that an earlier glyph has, of which it was said there.
     """
 
     glyph: str
@@ -226,6 +228,7 @@ class GlyphFindings(NamedTuple):
     axes: tuple[Any, ...]
     score: float | None
     kinks: Sequence[Any] = ()
+    repeated: Mapping[str, int] = MappingProxyType({})
 
 
 def check_font(
@@ -272,14 +275,17 @@ def check_font(
         with workers(0, executor=executor) as pool:
             for part in run(job, tasks, pool, ordered=True, observer=observer):
                 rows, numbers, shapes, scores, along, error = part.result
+                again = Counter[str]()
                 if once:
                     first = reported.first(shapes)
                     fresh = (first >= 0) & (rows.glyphs[first] == rows.glyphs)  # rows are in the order of glyphs
-                    rows = rows.chosen(np.flatnonzero(fresh | (rows.kinds == DIRECTION)))
+                    fresh |= rows.kinds == DIRECTION
+                    again.update(KINDS[kind].name for kind in rows.kinds[~fresh].tolist())
+                    rows = rows.chosen(np.flatnonzero(fresh))
                 found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
                 for (name, gid, _), own, of_axes, score in zip(part.tasks, found, numbers, scores, strict=True):
-                    yield GlyphFindings(name, gid, own, error, of_axes, score, along)
-                    along = ()
+                    yield GlyphFindings(name, gid, own, error, of_axes, score, along, again)
+                    along, again = (), Counter()
 
     return glyphs()
 
@@ -301,8 +307,9 @@ class Face:
     Attributes:
         font: its path as given, with the number of the face if there are several. family, style: of the font.
         source: of it, where places are to be drawn. home: user-space value of each axis where the font is open.
-        findings: those that are kept, the worst first. counts: of all new ones, by kind. known: number of those that
-            the baseline has. levels: those of new findings.
+        findings: those that are kept, the worst first. counts: of all new ones, by kind. repeated: by kind, those of
+            contours that an earlier glyph has. known: number of those that the baseline has. levels: those of new
+            findings.
         scores: of glyphs, those above 0; see :class:`GlyphFindings`.
         glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons.
         axes: kinks along each axis in numbers, of all glyphs checked. kinks: all smooth joints, if they are asked for.
@@ -316,6 +323,7 @@ class Face:
     home: Mapping[str, float] = field(default_factory=dict)
     findings: list[Finding] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
+    repeated: Counter[str] = field(default_factory=Counter)
     known: int = 0
     levels: set[Level] = field(default_factory=set)
     scores: dict[str, float] = field(default_factory=dict)
@@ -433,6 +441,7 @@ def check_face(
             face.scores[row.glyph] = row.score
         if row.axes:
             face.axes = [known + own for known, own in zip(face.axes, row.axes, strict=True)]
+        face.repeated.update(row.repeated)
         face.keep(row.findings, asked)
     if alone and face.failed and not face.glyphs:
         glyph, why = face.failed[0]

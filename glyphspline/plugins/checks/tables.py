@@ -65,6 +65,9 @@ def sentences(faces: Sequence[Face], found: int, shown: int, level: Level) -> It
     yield f"{checked}: {counted(found, 'finding')} of {'any level' if level == 'INFO' else level}"
     if found > shown:
         yield f"and {found - shown} more; --rows {found} shows all"
+    again = sum((face.repeated for face in faces), Counter())
+    if number := sum(again[kind] for kind in again if level in ("INFO", LEVEL_OF[kind])):
+        yield f"not counted, as other glyphs have the same contours: {number}"
     if level == "WARN" and (words := counts_words(counts, "INFO")):
         yield f"INFO, shown with -l INFO: {words}"
     if known := sum(face.known for face in faces):
@@ -90,6 +93,7 @@ def as_json(faces: Sequence[Face], thresholds: Thresholds) -> str:
             "error": face.error,
             "glyphs": face.glyphs,
             "counts": {kind: face.counts[kind] for kind in LEVEL_OF if face.counts[kind]},
+            "repeated": {kind: face.repeated[kind] for kind in LEVEL_OF if face.repeated[kind]},
             "known": face.known,
             "scores": face.scores,
             "axes": [asdict(numbers) for numbers in face.axes],

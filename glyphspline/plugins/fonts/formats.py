@@ -175,6 +175,7 @@ def back_to_source(source: Source, new: Any, spec: Any, copy: Path | None = None
     where = copy.name if copy else f"layer {layer} of {source.path.name}" if layer else source.path.name
     curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
     curves += "" if isinstance(source, OpenedUfo) else ", in all masters"
+    curves += ": points {:,} → {:,}".format(*found.points) * any(found.points)
     remarks = [f"{where}: new outlines of {counted(len(found.names), 'glyph')}, {curves}; nothing else changed"]
     kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
     return remarks + shortened(kept, NAMED, "{} more glyphs with contours that stay as they were")

@@ -59,7 +59,8 @@ class Designspace(EditableSource):
             raise FontError("its axes depend on each other (mappings): locations cannot be told axis by axis")
         for axis in document.axes:
             if not isinstance(axis, AxisDescriptor):
-                raise FontError(f"axis {axis.tag!r} has separate values, between which nothing is interpolated")
+                words = "has separate values, each a designspace of its own: split it (fontTools' splitInterpolable)"
+                raise FontError(f"axis {axis.tag!r} {words}")
         self.axes = tuple(_axis(axis) for axis in document.axes)
         instances = {item.name: item.getFullUserLocation(document) for item in document.instances if item.name}
         tags = {axis.name: axis.tag for axis in document.axes}

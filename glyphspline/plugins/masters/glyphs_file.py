@@ -1,4 +1,4 @@
-"""Glyphs files: glyphsLib turns one into a designspace with its UFOs, and applies corner components."""
+"""Glyphs files and packages: glyphsLib turns one into a designspace with its UFOs, and applies corner components."""
 
 from __future__ import annotations
 
@@ -10,10 +10,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...errors import FontError
 from ...extras import need
 from ...outlines.outline import Outline
 from ...readers.open import UTF8, Reader
 from ...readers.source import Location
+from ...readers.ufo import folder_bytes
 from ...types import Head
 from .designspace import Designspace
 
@@ -43,7 +45,7 @@ class GlyphsFile(Designspace):
         super().__init__(path, location, Path(made.designspace_path))
 
     def _bytes(self) -> Iterable[bytes]:
-        return (self.path.read_bytes(),)
+        return folder_bytes(self.path) if self.path.is_dir() else (self.path.read_bytes(),)
 
     def _outline(self, head: Head) -> Outline:
         return replace(super()._outline(head), unread=self._unread.get(head.name, ()))
@@ -56,6 +58,8 @@ class GlyphsFile(Designspace):
         """See :meth:`.EditableSource.text_edit`."""
         from .glyphs_edit import GlyphsEdit
 
+        if self.path.is_dir():
+            raise FontError("a Glyphs package takes no outlines back: save it as a file", font=str(self.path))
         return GlyphsEdit(self.path, self.master_ids, layer)
 
 
@@ -82,4 +86,9 @@ def _apply_corners(ufos: Mapping[str, Any], folder: Path) -> None:
         ufo.save(folder / name, overwrite=True)
 
 
-READER = Reader(lambda path, head: is_glyphs(head), GlyphsFile.opened, has_axes=True)
+def is_package(path: Path) -> bool:
+    """Whether a folder is a Glyphs package, which has the file's glyphs in files of their own."""
+    return (path / "order.plist").is_file() and (path / "glyphs").is_dir()
+
+
+READER = Reader(lambda path, head: is_glyphs(head) or is_package(path), GlyphsFile.opened, has_axes=True)

@@ -42,11 +42,15 @@ BESIDE = 0.3
 SMALL = 3.0
 """Moves of a point, in thousandths of an em, up to which the first way that does is taken."""
 
+LARGE = 40.0
+"""Moves of a point, in thousandths of an em, beyond which a finding is left: the handle was not meant to be there."""
+
 HOPE = 1.5
 """Times what they may be that turns and moves of samples are at most where places on the grid are looked for."""
 
 GRID, STILL, STILL_KINKS = "is mended by no move on the grid", "is still found", "still kinks"
 BEYOND = "is beyond the tolerance"
+FAR = f"is mended by no move of points below {LARGE:g}/1000 em"
 WEAK = (None, GRID, STILL, STILL_KINKS)
 """Reasons why a joint is left that are only given if nothing else is in the way."""
 
@@ -323,6 +327,9 @@ def _proposal(
     if distance > design.tolerance:
         group.needs = min(group.needs or np.inf, distance)
         group.blame(BEYOND)
+        return None
+    if np.hypot(*(points - old).T).max() > LARGE * design.em / 1000:
+        group.blame(FAR)
         return None
     numbers = np.flatnonzero((points != old).any(axis=(0, 2)))
     return Proposal(numbers, points[:, numbers], distance)

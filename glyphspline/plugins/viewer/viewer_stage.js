@@ -7,6 +7,7 @@
   GS.viewerLayers = {
     source: "Source", result: "Result", vertices: "Vertices", polygon: "Polygon", control: "Control polygon", feet: "Footpoints",
     intervals: "Intervals", "source-comb": "Source's comb", comb: "Result's comb", corners: "Teeth in corners", colour: "Colour",
+    handles: "Handles",
   };
 
   /** The layers of `source` (path data) and `result` (as the server gives it) that are on.
@@ -21,6 +22,7 @@
     add("comb", () => [GS.comb(contours, em, font.scale, { gain, corners: smooth && !on.has("corners") ? GS.corners(GS.contours(source)) : [] })]);
     add("colour", () => [GS.coloured(contours, em, font.scale)]);
     add("control", () => [GS.svg("path", { class: "control", d: result.control }), GS.dots(result.controls, "controls-dots")]);
+    add("handles", () => GS.handleLines(contours.flat()));
     const closed = (points) => "M" + points.map((p) => p.join(" ")).join("L") + "Z";
     add("polygon", () => [GS.svg("path", { class: "polygon", d: result.polygons.filter((p) => p.length).map(closed).join("") })]);
     add("vertices", () => [GS.dots(result.polygons.flat(), "vertices")]);

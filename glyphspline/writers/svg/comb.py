@@ -111,7 +111,7 @@ def legend(combs: Combs, number: int, reach: float, corners: int = 0, largest: f
         number: of cut teeth. reach: the scale in 1/em. corners: those in whose turn teeth are left out.
         largest: absolute curvature in 1/em, corners included.
     """
-    words = f" of the {shown_by(combs)} in 1/em, convex positive{'; dashed: of the source' * (combs == 'both')}"
+    words = f"{' of the source' * (combs == 'source')} in 1/em, convex +{'; dashed: of the source' * (combs == 'both')}"
     words += f"; dots: {number} {'tooth' if number == 1 else 'teeth'} cut at {LONGEST * reach:.3g}" * bool(number)
     words += f"; left out: the teeth in {counted(corners, 'corner')}" * bool(corners)
     if largest is None:

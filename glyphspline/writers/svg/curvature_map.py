@@ -30,7 +30,7 @@ from .path_data import Box, PathData, comb_precision, curves_data, dots_data, po
 WIDEST, STEP = 1.5, 0.02
 """Width in em of the longest legend, and what widths are multiples of: those of many glyphs are equal."""
 
-LETTERS, ADVANCE = 0.034, 0.6
+LETTERS, ADVANCE = 0.028, 0.6
 """Size in em of a legend's letters, and their advance in sizes, which is larger than that of common sans serifs."""
 
 STROKE = 3
@@ -127,7 +127,7 @@ def write_map(
         dots = dots_data(arrays.polygons.points if whose == "result" else joints, precision)
         layers.append(f'<path class="vertices" stroke="currentColor" stroke-width="{_width(em, 6)}" d="{dots}"/>\n')
     width = min(max(floor((box[2] - box[0]) / (STEP * em)), 1) * STEP, WIDEST) * em
-    letters = min(LETTERS * em, width / 8)
+    letters = min(LETTERS * em, width / 9)
     measured = [contour.measures.max_curvature for contour in glyph.contours]
     known = [each for each in measured if each is not None] if whose == "result" else []
     words = legend(combs, cut, scale * em, corners, max(known) * em if known else None)

@@ -163,7 +163,8 @@ def test_the_command_says_what_python_says() -> None:
     assert sum(facts["counts"].values()) == len(expected) > 100
     assert facts["findings"][0].keys() == {*gs.Finding.__dataclass_fields__}
     assert facts.keys() == {
-        "font", "family", "style", "error", "glyphs", "counts", "known", "scores", "axes", "findings", "failed",
+        "font", "family", "style", "error", "glyphs", "counts", "repeated", "known", "scores", "axes", "findings",
+        "failed",
     }  # fmt: skip
 
 

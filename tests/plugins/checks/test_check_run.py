@@ -186,6 +186,7 @@ def test_parts_that_cross_are_told_again_where_they_stand_otherwise(tmp_path: Pa
     path = variable_font(tmp_path / "v.ttf", {"a": parts(0, 50), "b": parts(70, 50), "c": parts(0, 60)}, {})
     assert [item.glyph for item in of(found(path), "overlap")] == ["a", "c"]
     assert [item.glyph for item in of(found(path, once=False), "overlap")] == ["a", "b", "c"]
+    assert sum(row.repeated.get("overlap", 0) for row in found(path)) == 1, "that of b"
 
 
 def test_a_kink_between_masters_is_told_once_where_it_is_worst(variable: Path) -> None:

@@ -83,7 +83,7 @@ def test_a_source_is_changed_in_place_and_nothing_is_left_elsewhere(ufo: Path, t
     assert {Path(name).suffix for name in before if before[name] != after[name]} == {".glif"}
     assert files(ufo.parent).keys() == beside.keys()
     assert "written to" not in said(done)
-    assert "C2 (--continuity g2: fewer points); nothing else changed" in said(done).replace("\n", " ")
+    assert re.search(r"fewer points\): points \d+ → \d+; nothing else changed", said(done).replace("\n", " "))
 
 
 def test_masters_are_taken_of_what_has_them(tmp_path: Path) -> None:
@@ -93,7 +93,7 @@ def test_masters_are_taken_of_what_has_them(tmp_path: Path) -> None:
     before = files(space.parent)
     done = refit(space, "--in-place", "--tolerance", "5")
     assert done.exit_code == 0, said(done)
-    assert "in all masters; nothing else changed" in said(done).replace("\n", " ")
+    assert re.search(r"in all masters: points \d+ → \d+; nothing else changed", said(done).replace("\n", " "))
     assert files(space.parent).keys() == before.keys()
 
 

@@ -17,6 +17,7 @@ from glyphspline.plugins.fonts.back.back import New, write_back
 from glyphspline.plugins.masters.designspace import Designspace
 from glyphspline.readers import Source
 from glyphspline.readers.ufo import Ufo
+from glyphspline.runs.font_search import find_fonts
 
 Points: TypeAlias = Sequence[tuple[float, float]]
 
@@ -355,6 +356,30 @@ def test_a_glyphs_file_is_a_designspace(tmp_path: Path) -> None:
     path.write_text("{ .appVersion = ")
     with pytest.raises(FontError, match=r"strokes\.glyphs: a broken Glyphs file"):
         open_source(path)
+
+
+def test_a_glyphs_package_is_its_file_in_parts(tmp_path: Path) -> None:
+    pytest.importorskip("glyphsLib")
+    pytest.importorskip("ufo2ft")
+    plist = pytest.importorskip("openstep_plist")
+    (tmp_path / "strokes.glyphs").write_text(GLYPHS)
+    whole, package = open_source(tmp_path / "strokes.glyphs"), tmp_path / "strokes.glyphspackage"
+    (package / "glyphs").mkdir(parents=True)
+    parts = plist.loads(GLYPHS, use_numbers=True)
+    glyphs = parts.pop("glyphs")
+    (package / "fontinfo.plist").write_text(plist.dumps(parts))
+    (package / "order.plist").write_text(plist.dumps([glyph["glyphname"] for glyph in glyphs]))
+    for glyph in glyphs:
+        (package / "glyphs" / f"{glyph['glyphname']}.glyph").write_text(plist.dumps(glyph))
+    assert find_fonts([str(package)]) == [package]
+    source = open_source(package)
+    assert source.glyph_names == whole.glyph_names
+    assert corners(source, "o") == corners(whole, "o")
+    before = source.sha256
+    (package / "order.plist").write_text("()")
+    assert open_source(package).sha256 != before
+    with pytest.raises(FontError, match=r"strokes\.glyphspackage: a Glyphs package takes no outlines back"):
+        write_back(source, [], 0)
 
 
 CORNER = """{

@@ -181,7 +181,7 @@ def test_the_atlas_has_a_page_for_twelve_glyphs_and_one_for_each_profile(tmp_pat
 @pytest.mark.parametrize(
     ("given", "words"),
     [
-        (["--preset", "type"], "corners sharp, continuity c2, tolerance 1/1000 em, effort best"),
+        (["--preset", "type"], "corners sharp, tolerance 1/1000 em, effort best"),
         (["--corners", "sharp", "--continuity", "g2", "--tolerance", "3"], "corners sharp, continuity g2, tolerance 3"),
     ],
 )
@@ -210,7 +210,8 @@ def test_the_profile_draws_curvature_over_arc_length(glyph: gs.GlyphResult) -> N
 def test_the_atlas_says_whose_comb_it_draws(glyph: gs.GlyphResult) -> None:
     for whose in ("source", "result"):
         figure = overview([glyph], 0.01, "Font", whose)
-        assert f"curvature of the {whose} in 1/em, convex positive" in [axes.get_xlabel() for axes in figure.axes]
+        words = "curvature of the source in 1/em, convex +" if whose == "source" else "curvature in 1/em, convex +"
+        assert words in [axes.get_xlabel() for axes in figure.axes]
 
 
 def test_an_atlas_shows_the_source_from_its_first_page_on(glyph: gs.GlyphResult) -> None:

@@ -40,11 +40,13 @@ class Written:
     Attributes:
         names: of the glyphs that changed. kept: why contours of others stayed as they were, by glyph.
         contours: the same by glyph and number of the contour in its outline.
+        points: of the contours that changed, of one master: as they were, and as they are.
     """
 
     names: list[str] = field(default_factory=list)
     kept: dict[str, str] = field(default_factory=dict)
     contours: dict[tuple[str, int], str] = field(default_factory=dict)
+    points: tuple[int, int] = (0, 0)
 
 
 @dataclass(frozen=True)
@@ -154,12 +156,14 @@ def _edited(source: EditableSource, glyphs: Iterable[New], digits: int, edit: Ed
             found.kept[new.name] = why = source.others[new.name]
             found.contours |= {(new.name, index): why for index in range(len(new.contours))}
             continue
-        changes, stays = _changes(source, new, digits, edit)
+        old, changes, stays = _changes(source, new, digits, edit)
         if stays:
             found.kept[new.name] = "; ".join([f"contour {number} {why}" for number, _, why in stays])
             found.contours |= {(new.name, index): why for _, index, why in stays}
         if changes:
             found.names.append(new.name)
+            before, after = found.points
+            found.points = before + sum(len(old[k]) for k in changes[0]), after + sum(map(len, changes[0].values()))
             for drawing, nodes in zip(new.drawings, () if dry else changes, strict=not dry):
                 edit.put(drawing, new.name, nodes)
     edit.finish()
@@ -168,10 +172,9 @@ def _edited(source: EditableSource, glyphs: Iterable[New], digits: int, edit: Ed
 
 def _changes(
     source: EditableSource, new: New, digits: int, edit: Edit
-) -> tuple[list[dict[int, list[Node]]], list[tuple[int, int, str]]]:
-    """By drawing, the contours that change and their nodes; and numbers of contours that stay, and why.
-
-    The numbers are those in the file and in the outline.
+) -> tuple[list[list[Node]], list[dict[int, list[Node]]], list[tuple[int, int, str]]]:
+    """The nodes of contours in the first drawing; by drawing those that change, with their new ones; and numbers of
+    contours that stay, in the file and in the outline, and why.
     """
     changes: list[dict[int, list[Node]]] = [{} for _ in new.drawings]
     stays = []
@@ -189,7 +192,7 @@ def _changes(
         elif made:
             for change, own in zip(changes, made, strict=True):
                 change[number] = own
-    return (changes if any(changes) else []), stays
+    return old[0], (changes if any(changes) else []), stays
 
 
 class _UfoEdit(Edit):
