@@ -41,9 +41,10 @@ FRAME = re.compile(rb"""<rect\s+id=["']frame["'][^>]*/>""")
 STROKES = rb"stroke(?:-width)?\s*[=:]"
 NOT_PLAIN = (
     rb"<(?:text|image|filter|marker|pattern|foreignObject|animate|set)\b|mix-blend-mode|"
-    rb"opacity\s*[=:]\s*[\"']?\s*0?\.|enable-background|\bcontext-|isolation|filter\s*[=:]"
+    rb"opacity\s*[=:]\s*[\"']?\s*(?:0?\.|\d\d?%)|enable-background|\bcontext-|isolation|filter\s*[=:]|"
+    rb"[\"']#(?:[0-9a-fA-F]{4}){1,2}[\"']|(?:rgba?|hsla?)\((?:[^,)]*,){3}\s*(?:0?\.\d+|\d\d?%)\s*\)"
 )
-"""What drawings have that are more than filled shapes."""
+"""What drawings have that are more than filled shapes, or are filled with paint that is partly transparent."""
 
 
 class Verdict(NamedTuple):

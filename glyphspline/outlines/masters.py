@@ -111,7 +111,7 @@ class Masters:
         contours: of the glyph, components decomposed, each in K masters: the default one first, then those at the peaks
             of the regions.
         advances: (K,) advances of the masters.
-        notes: one sentence for each part that the reader left out.
+        notes: one sentence for each part that the reader left out. unread: as :class:`.outline.Outline` has it.
         repeats: of points that all masters have more than once; see :class:`.Contours`. None if there are none.
     """
 
@@ -125,6 +125,7 @@ class Masters:
     metrics: FontMetrics = field(default_factory=FontMetrics)
     notes: tuple[str, ...] = ()
     repeats: IntArray | None = None
+    unread: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "contours", tuple(self.contours))
@@ -137,7 +138,7 @@ class Masters:
         contours = [MasterContour(contour.points[None], contour.degrees) for contour in outline.contours]
         return cls(
             outline.name, outline.gid, outline.unicodes, contours=contours, advances=np.array([outline.advance]),
-            metrics=outline.metrics, notes=outline.notes, repeats=outline.repeats,
+            metrics=outline.metrics, notes=outline.notes, repeats=outline.repeats, unread=outline.unread,
         )  # fmt: skip
 
     def __repr__(self) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..curves.bezier import evaluate
+from ..errors import GlyphsplineError
 from ..types import FloatArray, IntArray, Views, counted
 from .contour_arrays import ContourArrays, end_to_end
 from .open_paths import are_open
@@ -214,3 +215,8 @@ class Outline:
         """Draw with any fontTools segment pen."""
         for contour in self.contours:
             contour.draw(pen)
+
+
+def partly_read(unread: Sequence[str]) -> GlyphsplineError | None:
+    """What a source shows and a glyph has not, as an error; None: it has all."""
+    return GlyphsplineError(f"not read in full: {'; '.join(unread)}") if unread else None

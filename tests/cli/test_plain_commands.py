@@ -18,6 +18,7 @@ from glyphspline.cli.app import app
 from glyphspline.code_files import OFF, PLACE, kept
 from glyphspline.plugins.viewer.app import make_app
 from glyphspline.report import FOLDER as GALLERY
+from glyphspline.runs.pool import kill_server
 from glyphspline.writers.formats import OURS
 from tests.variable_fonts import polygon, quadratic, variable_font
 
@@ -50,12 +51,14 @@ def font(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def nothing_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Compiled code is looked for in an empty folder, and none is there after the test."""
+    """Compiled code is looked for in an empty folder, by worker processes too; none is there after the test."""
     place = tmp_path / "nothing"
     with monkeypatch.context() as change:
         change.setenv(PLACE, str(place))
+        kill_server()
         kept.look_again(anew=True)
         yield
+    kill_server()  # other tests' workers are not to look there
     kept.look_again(anew=True)
     assert not place.exists() or not [*place.iterdir()]
 

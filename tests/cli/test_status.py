@@ -21,11 +21,13 @@ DEJAVU = Path(matplotlib.get_data_path()) / "fonts" / "ttf" / "DejaVuSans.ttf"
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with a font that has a broken glyph, one with contours of one point, and a file that is no font."""
+    """A font that has a broken glyph, one with contours of one point, a file that is no font, and a stroked drawing."""
     folder = tmp_path_factory.mktemp("status")
     broken_glyph(folder / "broken.ttf")
     with_anchors(folder / "points.ttf")
     (folder / "bad.ttf").write_bytes(b"no font")
+    path = '<path d="M10 10H90V90H10Z" stroke="red"/>'
+    (folder / "part.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 100">{path}</svg>')
     return folder
 
 
@@ -63,6 +65,10 @@ UNDONE = [
     "check {place}/broken.ttf -j 0",
     "check {gyosho} {place}/bad.ttf --text O -j 0",
     "check {gyosho} -j 0 -e INFO",
+    "convert {place}/part.svg --all --format svg -j 0 --out {new}",  # a stroke is not read
+    "check {place}/part.svg -j 0",
+    "diff {place}/part.svg {place}/part.svg -j 0",
+    "dataset {place}/part.svg --no-fit --jobs 0 --out {new}",
     "diff {gyosho} {variable} --text O -j 0",
     "diff {gyosho} {gyosho} --text O龘 -j 0",
     "demo {gyosho} --text O龘 -j 0 -o {new}",

@@ -111,7 +111,7 @@ def check(
     if not run.quiet:
         for line in sentences(faces, len(shown), report.rows, level):
             say(line)
-    undone |= any(face.failed or face.error is not None for face in faces)
+    undone |= any(face.failed or face.unread or face.error is not None for face in faces)
     return undone or (report.error_level is not None and any(face.reaches(report.error_level) for face in faces))
 
 

@@ -48,7 +48,7 @@ class Checked(NamedTuple):
         rows: of the tasks that were done together. axes: kinks of each along each axis, in numbers.
         shapes: (n,) of the row's contour, in whichever glyph. scores: of each task; see :class:`GlyphFindings`.
         kinks: along each axis, if they are asked for.
-        error: why the only task could not be checked, or None.
+        error: why the only task could not be checked, or None. unread: of each task, what of it was not read.
     """
 
     rows: Measured
@@ -57,6 +57,7 @@ class Checked(NamedTuple):
     scores: Sequence[float | None]
     kinks: Sequence[Any] = ()
     error: str | None = None
+    unread: Sequence[tuple[str, ...]] = ()
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,8 @@ class CheckJob(Job[Head, Checked]):
         kept = np.flatnonzero(np.isin(rows.kinds, looked_for))
         rows = rows.chosen(kept[np.argsort(rows.glyphs[kept], kind="stable")])
         numbers = [tuple(along.numbers_of(g) for along in kinks) for g in range(len(contents))]
-        return Checked(rows, numbers, _shapes(contents, rows), scores, kinks if self.joints else ())
+        unread = [each.unread for each in contents]
+        return Checked(rows, numbers, _shapes(contents, rows), scores, kinks if self.joints else (), unread=unread)
 
     def measured(self, glyphs: Sequence[Any]) -> tuple[Measured, Sequence[Any]]:
         """Findings of every kind, and all smooth joints along each axis."""
@@ -108,7 +110,7 @@ class CheckJob(Job[Head, Checked]):
 
     def failed(self, task: Head, error: Exception) -> Checked:
         """Why a glyph could not be checked."""
-        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), [None], error=reason(error))
+        return Checked(Measured.joined(()), [()], np.zeros(0, dtype=np.int64), [None], (), reason(error), [()])
 
 
 @dataclass(frozen=True)
@@ -218,6 +220,7 @@ class GlyphFindings(NamedTuple):
         score: how far all its kinks, turns and jumps are seen, in thousandths of an em, whatever is looked for and in
             whichever glyph they are reported; None if it could not be checked.
         kinks: along each axis, of it and the glyphs after it up to the next that has some, if joints are asked for.
+        unread: what of it was not read, as of :class:`.Outline`.
         repeated: by kind, the number of findings of contours that an earlier glyph has, of which it was said there.
     """
 
@@ -228,6 +231,7 @@ class GlyphFindings(NamedTuple):
     axes: tuple[Any, ...]
     score: float | None
     kinks: Sequence[Any] = ()
+    unread: tuple[str, ...] = ()
     repeated: Mapping[str, int] = MappingProxyType({})
 
 
@@ -274,7 +278,7 @@ def check_font(
         reported = Shapes()
         with workers(0, executor=executor) as pool:
             for part in run(job, tasks, pool, ordered=True, observer=observer):
-                rows, numbers, shapes, scores, along, error = part.result
+                rows, numbers, shapes, scores, along, error, parts = part.result
                 again = Counter[str]()
                 if once:
                     first = reported.first(shapes)
@@ -283,8 +287,9 @@ def check_font(
                     again.update(KINDS[kind].name for kind in rows.kinds[~fresh].tolist())
                     rows = rows.chosen(np.flatnonzero(fresh))
                 found = findings([(name, gid) for name, gid, _ in part.tasks], rows, tags if chosen else ())
-                for (name, gid, _), own, of_axes, score in zip(part.tasks, found, numbers, scores, strict=True):
-                    yield GlyphFindings(name, gid, own, error, of_axes, score, along, again)
+                every = zip(part.tasks, found, numbers, scores, parts, strict=True)
+                for (name, gid, _), own, of_axes, score, unread in every:
+                    yield GlyphFindings(name, gid, own, error, of_axes, score, along, unread, again)
                     along, again = (), Counter()
 
     return glyphs()
@@ -311,7 +316,8 @@ class Face:
             contours that an earlier glyph has. known: number of those that the baseline has. levels: those of new
             findings.
         scores: of glyphs, those above 0; see :class:`GlyphFindings`.
-        glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons.
+        glyphs: number of those checked. failed: glyphs that could not be checked, with the reasons. unread: glyphs that
+            were not read in full, with what was not.
         axes: kinks along each axis in numbers, of all glyphs checked. kinks: all smooth joints, if they are asked for.
         remark: what was left undone, or None. error: why the font could not be read, or None.
     """
@@ -329,6 +335,7 @@ class Face:
     scores: dict[str, float] = field(default_factory=dict)
     glyphs: int = 0
     failed: list[tuple[str, str]] = field(default_factory=list)
+    unread: list[tuple[str, str]] = field(default_factory=list)
     axes: list[Any] = field(default_factory=list)
     kinks: Any = None
     remark: str | None = None
@@ -437,6 +444,8 @@ def check_face(
         face.glyphs += row.error is None
         if row.error is not None:
             face.failed.append((row.glyph, row.error))
+        if row.unread:
+            face.unread.append((row.glyph, "; ".join(row.unread)))
         if row.score:
             face.scores[row.glyph] = row.score
         if row.axes:

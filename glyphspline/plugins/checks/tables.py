@@ -72,9 +72,11 @@ def sentences(faces: Sequence[Face], found: int, shown: int, level: Level) -> It
         yield f"INFO, shown with -l INFO: {words}"
     if known := sum(face.known for face in faces):
         yield f"not counted, as the baseline has them: {known}"
-    failed, unread = failures(faces)
-    for lines, noun in ((failed, "glyphs"), (unread, "fonts")):
+    failed, broken = failures(faces)
+    for lines, noun in ((failed, "glyphs"), (broken, "fonts")):
         yield from (f"not checked: {line}" for line in shortened(lines, 3, f"and {{}} {noun} more"))
+    parts = [f"{glyph}: {what}" for face in faces for glyph, what in face.unread]
+    yield from (f"not read: {line}" for line in shortened(parts, 3, "of {} glyphs more"))
 
 
 def failures(faces: Sequence[Face]) -> tuple[list[str], list[str]]:
@@ -99,6 +101,7 @@ def as_json(faces: Sequence[Face], thresholds: Thresholds) -> str:
             "axes": [asdict(numbers) for numbers in face.axes],
             "findings": [asdict(finding) for finding in face.findings],
             "failed": [{"glyph": glyph, "error": error} for glyph, error in face.failed],
+            "unread": dict(face.unread),
         }
         for face in faces
     ]

@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any, NamedTuple, TypeAlias
 
 from ...errors import GlyphsplineError, is_positive, require
+from ...outlines.outline import partly_read
 from ...readers import Source
 from ...readers.source import OutlineOrError
 from ...runs.engine import Item, Job, Observer, reason, run
@@ -65,7 +66,10 @@ class CompareJob(Job[Pair, Found]):
 def _item(old: OutlineOrError, new: OutlineOrError) -> Item | GlyphsplineError:
     """Both outlines of a glyph, or why one of them cannot be compared."""
     for which, outline in (("old", old), ("new", new)):
-        error = outline if isinstance(outline, GlyphsplineError) else LIMITS.error_of(len(outline.arrays.degrees))
+        if isinstance(outline, GlyphsplineError):
+            error: GlyphsplineError | None = outline
+        else:
+            error = partly_read(outline.unread) or LIMITS.error_of(len(outline.arrays.degrees))
         if error:
             return GlyphsplineError(f"{which}: {reason(error)}")
     pair: tuple[Any, Any] = old, new

@@ -17,6 +17,7 @@ from typing import Any
 from ...errors import GlyphsplineError, OptionError, OutputError
 from ...extras import need
 from ...files import reading
+from ...outlines.outline import partly_read
 from ...runs.convert import ConvertJob
 from ...runs.engine import Item, Job, Observer, reason, run
 from ...runs.folder import UNFINISHED, locked, refuse_older
@@ -57,8 +58,11 @@ class RowsJob(Job[Task, Made]):
         found = list(source.outlines([gids[task.at] for task in tasks], errors="return"))
         points, most = self.spec.points or 0, LIMITS.vertices
         for k, outline in enumerate(found):
-            count = 0 if isinstance(outline, GlyphsplineError) else len(outline.contours)
-            if count > 100 and count * points > most:
+            if isinstance(outline, GlyphsplineError):
+                continue
+            if error := partly_read(outline.unread):
+                found[k] = error
+            elif (count := len(outline.contours)) > 100 and count * points > most:
                 words = f"{count} contours of {points} points, more than the {most} points allowed"
                 found[k] = GlyphsplineError(words)
         return items(found, self.spec.options, LIMITS)

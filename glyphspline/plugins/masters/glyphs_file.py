@@ -12,6 +12,7 @@ from typing import Any
 
 from ...errors import FontError
 from ...extras import need
+from ...outlines.masters import Masters
 from ...outlines.outline import Outline
 from ...readers.open import UTF8, Reader
 from ...readers.source import Location
@@ -49,6 +50,9 @@ class GlyphsFile(Designspace):
 
     def _outline(self, head: Head) -> Outline:
         return replace(super()._outline(head), unread=self._unread.get(head.name, ()))
+
+    def _masters(self, head: Head) -> Masters:
+        return replace(super()._masters(head), unread=self._unread.get(head.name, ()))
 
     def master_ids(self, ids: Sequence[str]) -> dict[Path, str]:
         """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""

@@ -23,7 +23,7 @@ from ...files import remove_partials, write_whole, writing
 from ...fitting.options import Options
 from ...fitting.results import ContourResults, GlyphResult, not_fitted
 from ...outlines.masters import DesignAxis, MasterContour, Masters
-from ...outlines.outline import Contours
+from ...outlines.outline import Contours, partly_read
 from ...readers import Font, Source
 from ...report import FOLDER as GALLERY
 from ...report.data import contours_in
@@ -126,7 +126,10 @@ class MastersJob(Output, Job[Task, list[Done]]):
     def _masters(self, task: Task) -> Masters:
         fonts = sources(*self.places)
         if self.axis is None:
-            return fonts[0].masters(task.head.name)
+            masters = fonts[0].masters(task.head.name)
+            if error := partly_read(masters.unread):
+                raise error
+            return masters
         found = next(iter(masters_of_fonts(fonts, self.axis, [task.head.name])))
         if isinstance(found, Unmatched):
             raise found.error

@@ -164,7 +164,7 @@ def test_the_command_says_what_python_says() -> None:
     assert facts["findings"][0].keys() == {*gs.Finding.__dataclass_fields__}
     assert facts.keys() == {
         "font", "family", "style", "error", "glyphs", "counts", "repeated", "known", "scores", "axes", "findings",
-        "failed",
+        "failed", "unread",
     }  # fmt: skip
 
 

@@ -434,6 +434,7 @@ def test_corner_components_are_applied_and_caps_are_named(tmp_path: Path) -> Non
     assert corners(source, "H") == [[0, 700], [0, 0], [100, 0], [100, 700]]
     assert corners(source, "I") == [[0, 700], *serif, [100, 0], [100, 700]]
     assert [source.outline(name).unread for name in "HI"] == [("cap components",), ()]
+    assert [source.masters(name).unread for name in "HI"] == [("cap components",), ()]
     new = [New(name, [source.outline(name).contours], source.drawings(name)) for name in "I"]
     found = write_back(source, new, 0, dry=True)
     assert not found.names
