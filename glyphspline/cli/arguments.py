@@ -100,10 +100,16 @@ def characters_of(text: str) -> str:
     """The characters of an option: the text itself, or after an @ that of a UTF-8 file. A single @ is a character.
 
     Raises:
-        OSError: the file cannot be read.
+        OptionError: the file cannot be read.
     """
     typed = as_typed(text)
-    return Path(typed[1:]).read_text(encoding="utf-8-sig") if typed[0] == "@" and len(typed) > 1 else typed
+    if not typed.startswith("@") or len(typed) == 1:
+        return typed
+    try:
+        return Path(typed[1:]).read_text(encoding="utf-8-sig")
+    except (OSError, ValueError) as error:
+        words = getattr(error, "strerror", None) or error
+        raise OptionError(f"{typed[1:]}: {words}. A text of @ and others has the @ behind another character") from error
 
 
 @dataclass(frozen=True)
