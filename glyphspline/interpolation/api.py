@@ -279,13 +279,12 @@ def interpolate_batch(
         threads: number of threads; None for one a core. Results do not depend on it.
     """
     count = len(offsets) - 1
-    peak_shares = np.full(count, method.peak_share)
+    peak_shares, tolerances = np.empty((2, count))
+    peak_shares[:] = method.peak_share
     if by_knot is not None:
         peak_shares[by_knot] = 0.0
-    if residual_tolerances is None:
-        tolerances = np.full(count, np.nan if method.residual_tolerance is None else method.residual_tolerance)
-    else:
-        tolerances = residual_tolerances.copy()
+    given = method.residual_tolerance if residual_tolerances is None else residual_tolerances
+    tolerances[:] = np.nan if given is None else given
     tangents = NO_TANGENTS if end_tangents is None else end_tangents
     if not method.closed and end_tangents is None:
         tangents = np.full((count, 2, points.shape[1]), np.nan)

@@ -57,8 +57,9 @@ def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
 
 def over_threads(work: Callable[[Any], Any], items: Sequence[Any], threads: int | None = None) -> list[Any]:
     """``work`` of each item, in order, on several threads; ``work`` should release the interpreter's lock."""
-    count = min(_threads(threads), len(items))
-    return list((_pool(_threads(threads)).map if count > 1 else map)(work, items))
+    if len(items) < 2 or _threads(threads) == 1:
+        return [work(item) for item in items]
+    return list(_pool(_threads(threads)).map(work, items))
 
 
 @cache

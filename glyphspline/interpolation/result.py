@@ -91,10 +91,10 @@ class Found(NamedTuple):
     @classmethod
     def empty(cls, total: int, count: int, closed: bool, d: int) -> Found:
         """Arrays for ``count`` polygons with ``total`` vertices in R^d."""
+        new = np.empty
         return cls(
-            np.empty(total + count * closed), np.empty((total + 2 * count * (not closed), d)), np.empty(total),
-            np.empty((total, 2)), np.empty(total, dtype=np.int64), np.empty((count, 6), dtype=np.int64),
-            np.empty(count),
+            new(total + count * closed), new((total + 2 * count * (not closed), d)), new(total), new((total, 2)),
+            new(total, np.int64), new((count, 6), np.int64), new(count),
         )  # fmt: skip
 
 
