@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import product
+from math import comb
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +15,7 @@ from fontTools.ttLib import TTFont, newTable
 from fontTools.ttLib.tables import otTables
 
 from glyphspline import FontError, GlyphsplineError, open_font
-from glyphspline.outlines.masters import Masters, distinct_regions, region_scalars
+from glyphspline.outlines.masters import MasterContour, Masters, distinct_regions, region_scalars
 from tests.places import FONTS
 from tests.variable_fonts import Tuples, polygon, quadratic, variable_font
 
@@ -228,3 +229,20 @@ def test_glyphs_of_variable_components_are_refused(tmp_path: Path) -> None:
     with pytest.raises(GlyphsplineError, match="glyph 'mirror': made of variable components"):
         font.masters("mirror")
     assert isinstance(font.masters("o"), Masters)
+
+
+def test_cubics_are_the_segments_of_every_degree() -> None:
+    degrees = np.array([1, 2, 3, 2])
+    points = np.random.default_rng(5).normal(size=(2, degrees.sum(), 2))
+
+    def drawn(controls: np.ndarray, t: float) -> np.ndarray:
+        d = len(controls) - 1
+        return sum(comb(d, i) * t**i * (1 - t) ** (d - i) * point for i, point in enumerate(controls))
+
+    for master, cubics in zip(points, MasterContour(points, degrees).cubics(), strict=True):
+        ring, start = np.concatenate([master, master[:1]]), 0
+        for degree, cubic in zip(degrees, cubics, strict=True):
+            for t in (0.0, 0.3, 0.8, 1.0):
+                own = drawn(ring[start : start + degree + 1], t)
+                np.testing.assert_allclose(drawn(cubic, t), own, atol=1e-12)
+            start += degree
