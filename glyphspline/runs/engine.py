@@ -199,7 +199,7 @@ def work(job: Job[Task, Result], tasks: Sequence[Task], alone: bool = False) -> 
 
     def finish() -> None:
         if batch:
-            parts.extend(_done(job, batch))
+            parts.extend(_do(job, batch))
             batch.clear()
             sign_of_life()
 
@@ -217,7 +217,7 @@ def work(job: Job[Task, Result], tasks: Sequence[Task], alone: bool = False) -> 
     return parts
 
 
-def _done(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Part[Task, Result]]:
+def _do(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Part[Task, Result]]:
     """Do a batch; after an unexpected error, one by one."""
     started = time.perf_counter()
     tasks = [task for task, _ in batch]
@@ -227,7 +227,7 @@ def _done(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Pa
         raise
     except Exception as error:  # broken data raises anything
         if len(batch) > 1:
-            return [part for one in batch for part in _done(job, [one])]
+            return [part for one in batch for part in _do(job, [one])]
         return [_failed(job, tasks[0], error, time.perf_counter() - started)]
     return [Part(tasks, result, time.perf_counter() - started, job.failures(result))]
 
@@ -242,6 +242,6 @@ def reason(error: Exception) -> str:
         return error.message if error.contour is None else f"contour {error.contour}: {error.message}"
     if isinstance(error, MemoryError):
         return "not enough memory"
-    from ..readers.source import reason
+    from ..readers.source import library_words
 
-    return reason(error)
+    return library_words(error)

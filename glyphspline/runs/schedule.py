@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..readers import Source
 
 Place = tuple[Path, int, tuple[tuple[str, float], ...]]
-"""A file, a face and a location."""
+"""By which a process opens a source again: a file, a face and a location, axis tags with user-space values."""
 
 
 def place_of(source: Source) -> Place:

@@ -22,13 +22,13 @@ from ....types import FloatArray, IntArray
 from ..tables.font_glyphs import FINE, on_grid, put_string
 from ..tables.master_deltas import blend, order_of, regions_of
 from .programs import Command, Program
-from .stored import NEAR, OTHERWISE, REGIONS, Stored, matched
+from .stored import NEAR, OTHERWISE, REGIONS, StoredContours, matched
 
 STACK = 48
 """Most numbers on the stack of a ``CFF`` char string, by the format."""
 
 
-class CharStringContours(Stored):
+class CharStringContours(StoredContours):
     """The contours of a char string. Operators that draw what changes are written anew, with the subroutines that have
     them; all others stay.
 

@@ -14,14 +14,14 @@ from fontTools.varLib.iup import iup_delta
 from ....outlines.masters import MasterContour, Masters, quadratics
 from ....types import BoolArray, FloatArray, IntArray
 from ..tables.master_deltas import rounded_deltas
-from ..tables.variable_glyf import PHANTOMS, Gvar, Record
-from .stored import NEAR, REGIONS, Stored, matched
+from ..tables.variable_glyf import PHANTOMS, GlyphRecord, Gvar
+from .stored import NEAR, REGIONS, StoredContours, matched
 
 Deltas = list[tuple[int, int] | None]
 """Of the points of a glyph in one variation; None where they are left to be inferred."""
 
 
-class GlyfContours(Stored):
+class GlyfContours(StoredContours):
     """The contours of a simple glyph.
 
     Args:
@@ -30,7 +30,7 @@ class GlyfContours(Stored):
 
     def __init__(self, font: TTFont, name: str, glyph: Masters, gvar: Gvar | None) -> None:
         self._simple, self._gid, self._gvar, self._glyph = font["glyf"][name], font.getGlyphID(name), gvar, glyph
-        self._record = record = Record.of(font, name, glyph, gvar)
+        self._record = record = GlyphRecord.of(font, name, glyph, gvar)
         self._points = record.outline(record.drawn)
         whole = [quadratics(self._points[:, a:b], record.on[a:b])[:2] for a, b in record.spans]
         self._singles = [singles(*each) for each in whole]
