@@ -45,7 +45,7 @@ Refit = Callable[[list[int]], Iterable[Result]]
 
 
 class GlyphTrial(NamedTuple, Generic[Result]):
-    """Results of a glyph's contours, and what changed in them: see :data:`.topology.Changes`."""
+    """One try of a whole glyph: results of its contours, and what changed in them, see :data:`.topology.Changes`."""
 
     results: Sequence[Result]
     found: Changes
@@ -121,11 +121,7 @@ def faithful(
 def _settled(
     contours: ContourArrays, a: int, b: int, first: GlyphTrial[Part], fits: Fits, options: Options, tolerance: float
 ) -> tuple[GlyphTrial[Part], GlyphTrial[Part], GlyphTrial[Part]]:
-    """The best of a glyph's fits, of those of another mode too, and of its source's contours too.
-
-    Args:
-        a, b: its contours are those from a up to b. first: the first fit.
-    """
+    """The best of the fits of a glyph, of contours a up to b; of those of another mode too; and of its source too."""
     source = contours.part(a, b)
 
     def judged(results: Sequence[Part]) -> GlyphTrial[Part]:

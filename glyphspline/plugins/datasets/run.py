@@ -187,11 +187,7 @@ def _prepare(out: str, place: Path, plan: Plan, restart: bool) -> None:
 
 
 def _record(out: str) -> dict[str, Any] | None:
-    """The record of the data set in a folder; None if it has none.
-
-    Raises:
-        OutputError: a file of that name is no such record.
-    """
+    """The record of the data set in a folder; None if it has none, an OutputError if the file is something else."""
     path = f"{out}/{RECORD}"
     if remote.size(path) is None:
         return None

@@ -118,10 +118,7 @@ def _on_grid(
     old: FloatArray, node: FloatArray, way: FloatArray, length: FloatArray, frozen: BoolArray, step: float,
     keep: bool = True,
 ) -> FloatArray:  # fmt: skip
-    """(K, 2) places on the grid near so much along the way from nodes; the old ones where those are as good.
-
-    ``frozen``: (K, 2) coordinates that stay.
-    """
+    """(K, 2) places on the grid near so far along the way from nodes, old ones if as good; ``frozen``: (K, 2) stay."""
     best = node + length[:, None] * way
     around = np.stack(np.meshgrid(*[np.arange(-REACH, REACH + 1.0)] * 2), axis=-1).reshape(-1, 1, 2)
     tried = np.where(frozen, old, step * (np.round(best / step) + around))  # (T, K, 2)
