@@ -58,7 +58,7 @@ def mend(
     report: Annotated[ReportOptions, only("rows", "html")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     options: MendOptions,
-    out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,
+    out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PATH)] = None,
     dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
 ) -> bool:
     """Mend what check finds in sources: points move as little as it takes, in all masters.

@@ -57,7 +57,7 @@ class CharStringContours(StoredContours):
         super().__init__(*matched(glyph, stored))
 
     def masters(self, new: Masters) -> Masters:
-        """See :meth:`.Stored.masters`: coordinates and deltas are multiples of 1/65536."""
+        """See :meth:`.StoredContours.masters`: coordinates and deltas are multiples of 1/65536."""
         contours = list(new.contours)
         for c, steps in self._steps(new):
             index = self.owns[c]
@@ -68,7 +68,7 @@ class CharStringContours(StoredContours):
         return replace(new, contours=contours)
 
     def put(self, new: Masters) -> None:
-        """See :meth:`.Stored.put`. The new char string is not compiled, so that :func:`.programs.share` can read it.
+        """See :meth:`.StoredContours.put`. The new char string is not compiled: :func:`.programs.share` is to read it.
 
         Raises:
             GlyphsplineError: a point moves in a master whose region the char string has not.

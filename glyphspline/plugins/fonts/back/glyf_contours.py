@@ -40,7 +40,7 @@ class GlyfContours(StoredContours):
         super().__init__(owns, why)
 
     def masters(self, new: Masters) -> Masters:
-        """See :meth:`.Stored.masters`: coordinates and deltas are whole numbers."""
+        """See :meth:`.StoredContours.masters`: coordinates and deltas are whole numbers."""
         (default, deltas), record = self._moved(new), self._record
         every = [*map(tuple, default.tolist()), *record.coordinates[-PHANTOMS:]]
         points = record.outline(record.in_masters(every, deltas))
@@ -50,7 +50,7 @@ class GlyfContours(StoredContours):
         return replace(new, contours=contours)
 
     def put(self, new: Masters) -> None:
-        """See :meth:`.Stored.put`."""
+        """See :meth:`.StoredContours.put`."""
         default, deltas = self._moved(new)
         self._simple.coordinates = GlyphCoordinates(default.tolist())
         if self._gvar is not None:
