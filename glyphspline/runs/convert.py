@@ -23,7 +23,7 @@ from ..report.gallery import is_whole, write_index, write_report
 from ..types import Names
 from ..writers.formats import format_named
 from ..writers.svg.comb import combs
-from .engine import Item, Job, Observer, reason, run, settle
+from .engine import Item, Job, Observer, choose_to_compile, reason, run
 from .file_names import file_names
 from .folder import (
     MANIFEST,
@@ -154,7 +154,7 @@ def convert_font(
             tasks = tasks_of(source, glyphs, spec.names, progress.stems)
             left = [task for task in tasks if task.head.gid not in finished]
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
-            settle(job, left, pool, len(left))  # before the scale, which is of a sample
+            choose_to_compile(job, left, pool, len(left))  # before the scale, which is of a sample
             job = with_scale(job, source, glyphs, tasks, pool)
             for part in progress.advance(job, left, pool, observer):
                 for glyph in part.result:
