@@ -22,24 +22,24 @@ LOOK = "How drawings look"
 """Headings of groups of options."""
 
 
-class Rule(NamedTuple):
+class Condition(NamedTuple):
     """A condition on a value that is not None, with its phrase: "a positive distance"."""
 
     phrase: str
     holds: Callable[[Any], bool]
 
 
-def positive(noun: str) -> Rule:
+def positive(noun: str) -> Condition:
     """A finite number above 0."""
-    return Rule(f"a positive {noun}", is_positive)
+    return Condition(f"a positive {noun}", is_positive)
 
 
-def whole(least: int, most: int) -> Rule:
+def whole(least: int, most: int) -> Condition:
     """An integer of a range."""
-    return Rule(f"a whole number from {least} to {most}", lambda value: is_whole(value, least, most))
+    return Condition(f"a whole number from {least} to {most}", lambda value: is_whole(value, least, most))
 
 
-SHARE = Rule("from 0 to 1", lambda value: is_number(value, 0, 1))
+SHARE = Condition("from 0 to 1", lambda value: is_number(value, 0, 1))
 
 
 @dataclass(frozen=True)
@@ -57,7 +57,7 @@ class About:
     panel: str | None = None
     metavar: str | None = None
     flags: tuple[str, ...] = ()
-    rule: Rule | None = None
+    rule: Condition | None = None
     words: Mapping[str, Any] = field(default_factory=dict)
     more: Mapping[str, Any] = field(default_factory=dict)
     shown: bool = True
@@ -83,7 +83,7 @@ def option(
     return field(default=default, metadata={"about": About(help, panel, metavar, tuple(flags.split()), **about)})
 
 
-def checked(default: Any, rule: Rule | None = None) -> Any:
+def checked(default: Any, rule: Condition | None = None) -> Any:
     """A dataclass field that is checked as an option is, and set in Python alone: no command has it."""
     return field(default=default, metadata={"about": About("", rule=rule, shown=False)})
 

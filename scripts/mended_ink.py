@@ -27,7 +27,7 @@ from glyphspline.curves.bezier import evaluate
 from glyphspline.outlines.flaws.kinds import MENDED
 from glyphspline.plugins.checks.check import check_many
 from glyphspline.plugins.mending.ink import INK
-from glyphspline.plugins.mending.job import Asked, MendedSource, mend_source
+from glyphspline.plugins.mending.job import MendedSource, Scope, mend_source
 from glyphspline.readers import Font, open_source
 from glyphspline.readers.ufo import Ufo
 from glyphspline.types import BoolArray, FloatArray
@@ -128,7 +128,7 @@ def mended(
     source: Ufo | Font, names: Sequence[str], kinds: Sequence[str], tolerance: float, copy: Path
 ) -> MendedSource:
     """A copy of a source with its glyphs mended."""
-    return mend_source(source, names, Asked(kinds, tolerance), copy=copy)
+    return mend_source(source, names, Scope(kinds, tolerance), copy=copy)
 
 
 def new_findings(source: Ufo | Font, copy: Path, names: Sequence[str]) -> Counter[str]:

@@ -19,8 +19,8 @@ import numpy as np
 import glyphspline as gs
 from glyphspline.outlines.flaws.kinds import THRESHOLDS
 from glyphspline.plugins.masters.designspace import Designspace
-from glyphspline.plugins.mending.job import Asked, mend_source
-from glyphspline.plugins.mending.state import Change, State
+from glyphspline.plugins.mending.job import Scope, mend_source
+from glyphspline.plugins.mending.state import Change, Tally
 from glyphspline.readers import Font, open_source
 from glyphspline.readers.ufo import Ufo
 
@@ -55,11 +55,11 @@ def of_source(
     names = [names[k] for k in rng.permutation(len(names))[:most]]
     em = source.outline(names[0]).metrics.units_per_em / 1000
     before = time.process_time()
-    found = mend_source(source, names, Asked(tolerance=tolerance * em), dry=True)
+    found = mend_source(source, names, Scope(tolerance=tolerance * em), dry=True)
     spent = time.process_time() - before
     new = points = beyond = 0
     for old, now in found.drawn.values():
-        states = [State.of(each, THRESHOLDS, source.outer).found for each in (now, old)]
+        states = [Tally.of(each, THRESHOLDS, source.outer).found for each in (now, old)]
         new += (states[0] - states[1]).total()
         points += sum(each.points.shape[1] for each in now.contours) - sum(e.points.shape[1] for e in old.contours)
         for _ in range(LOCATIONS):

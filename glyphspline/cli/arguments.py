@@ -12,7 +12,7 @@ from .._version import __version__
 from ..errors import GlyphsplineError, OptionError, require
 from ..fields import WRITTEN, About, option
 from .config import settings
-from .groups import natural, place
+from .groups import as_path, natural
 from .messages import stop
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ GLYPHS = "Which glyphs"
 RUN = "The run"
 """Headings of groups of options."""
 
-NATURAL, PLACE = {"parser": natural}, {"parser": place}
+NATURAL, PATH = {"parser": natural}, {"parser": as_path}
 
 FONT_HELP = "TTF, OTF, TTC, WOFF, WOFF2, UFO, designspace, Glyphs or SVG; - is standard input."
 FONTS_HELP = (
@@ -88,7 +88,7 @@ def out(help: str, metavar: str, **more: Any) -> About:
 
 FontFile = Annotated[Path, typer.Argument(metavar="FONT", help=FONT_HELP, show_default=False)]
 FontFiles = Annotated[list[str], typer.Argument(metavar="FONT", help=FONTS_HELP, show_default=False)]
-Out = Annotated[Path, out("Write to this folder.", "DIR", parser=place, show_default=False)]
+Out = Annotated[Path, out("Write to this folder.", "DIR", parser=as_path, show_default=False)]
 
 
 def as_typed(text: str) -> str:

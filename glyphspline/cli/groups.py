@@ -82,8 +82,8 @@ def grouped(function: Callable[..., bool | None], cls: type[Command] = Command) 
     """A command for typer, from a function that takes values and returns whether something asked for was not done.
 
     A parameter is a dataclass, an option annotated with :class:`.About`, or an argument of typer. Expected errors end
-    the command, those of making the values too: see :mod:`.status`. A field whose option is not given, neither on the
-    command line nor in a file, keeps the value of the parameter's default, or that of the preset.
+    the command, those of making the values too: see :func:`.messages.errors`. A field whose option is given
+    neither on the command line nor in a file, keeps the value of the parameter's default, or that of the preset.
     """
     hints = get_type_hints(function, include_extras=True)
     hints.pop("return")
@@ -204,11 +204,11 @@ number, whole = _parser(float, "a number"), _parser(int, "a whole number")
 natural = _parser(int, "a whole number from 0 on", 0)
 
 
-def place(text: Any) -> Path:
+def as_path(text: Any) -> Path:
     """Parse a path. Empty strings are rejected, as ``Path("")`` is the current folder."""
     if not str(text):
         raise typer.BadParameter("it is empty: give a folder, or . for this one")
     return Path(text)
 
 
-PARSERS: dict[Any, Callable[[Any], Any]] = {int: whole, float: number, Path: place}
+PARSERS: dict[Any, Callable[[Any], Any]] = {int: whole, float: number, Path: as_path}

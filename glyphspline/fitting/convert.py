@@ -120,8 +120,8 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
     given = [_united(outline) if options.remove_overlaps else (outline, []) for outline in glyphs]
     alike: dict[tuple[float, float], list[int]] = {}
     for k, (outline, _) in enumerate(given):
-        # What is set aside of the tolerance is the same for most outlines that were snapped.
-        # Above the distance, in font units, by which readers of fonts snap points.
+        # Set aside of the tolerance, in font units: what the reader snapped, or at least more than readers of fonts do,
+        # so that most outlines are converted together.
         reserve = max(outline.snapped, 0.0015) if outline.snapped else 0.0
         alike.setdefault((outline.metrics.units_per_em, reserve), []).append(k)
     results: dict[int, GlyphResult] = {}
@@ -134,7 +134,7 @@ def _convert_batch(glyphs: list[Outline], options: Options) -> list[GlyphResult]
 def _convert_alike(
     glyphs: Sequence[Outline], notes: Sequence[list[str]], options: Options, em: float, reserve: float
 ) -> list[GlyphResult]:
-    """Convert glyphs whose em is ``em``, all contours end to end; so much of the tolerance is set aside."""
+    """Convert glyphs whose em is ``em``, all contours end to end; ``reserve`` of the tolerance is set aside."""
     tolerance = options.tolerance_for(em)
     given = joined([outline.arrays for outline in glyphs])
     before = offsets_of([len(outline.contours) for outline in glyphs])
@@ -174,12 +174,7 @@ def _convert_alike(
 def _convert_contours(
     contours: ContourArrays, opened: BoolArray, glyphs: IntArray, options: Options, tolerance: float, em: float
 ) -> ConvertedContours:
-    """Fit all contours in the mode of the options, those that are ``opened`` as paths; an error's ``contour`` is the
-    index.
-
-    Args:
-        glyphs: (G + 1,) where the contours of each glyph begin.
-    """
+    """Fit contours, those that are ``opened`` as paths; ``glyphs``: (G + 1,) where those of each glyph begin."""
     if not opened.any():
         return _convert_closed(contours, glyphs, options, tolerance, em)
     from .open_paths import convert_open  # imports the compiler
@@ -202,7 +197,7 @@ def _convert_contours(
 def _convert_closed(
     contours: ContourArrays, glyphs: IntArray, options: Options, tolerance: float, em: float
 ) -> ConvertedContours:
-    """Fit closed contours in the mode of the options."""
+    """Fit closed contours in the mode of the options; an error's ``contour`` is the index."""
     # Imported here because these import the compiler, which the package itself does not need.
     if contours.num_contours == 0:
         return NOTHING

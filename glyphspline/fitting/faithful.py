@@ -44,8 +44,8 @@ Refit = Callable[[list[int]], Iterable[Result]]
 """From the numbers of contours to other results of these."""
 
 
-class Trial(NamedTuple, Generic[Result]):
-    """Results of a glyph's contours, and what changed in them: see :data:`.topology.Changes`."""
+class GlyphTrial(NamedTuple, Generic[Result]):
+    """One try of a whole glyph: results of its contours, and what changed in them, see :data:`.topology.Changes`."""
 
     results: Sequence[Result]
     found: Changes
@@ -59,9 +59,9 @@ class Trial(NamedTuple, Generic[Result]):
 
 
 def tries(
-    trial: Trial[Result], refits: Iterable[Refit[Result]], judged: Callable[[Sequence[Result]], Trial[Result]],
-    which: Callable[[Changes], BoolArray] = changed,
-) -> Iterator[Trial[Result]]:  # fmt: skip
+    trial: GlyphTrial[Result], refits: Iterable[Refit[Result]],
+    judged: Callable[[Sequence[Result]], GlyphTrial[Result]], which: Callable[[Changes], BoolArray] = changed,
+) -> Iterator[GlyphTrial[Result]]:  # fmt: skip
     """A trial, and others, each with other results for those contours of the last one that are wrong.
 
     Args:
@@ -103,7 +103,7 @@ def faithful(
     corners_kept, source_kept = np.zeros((2, len(best)), dtype=np.bool_)
     for g in np.unique(np.searchsorted(glyphs, np.flatnonzero(changed(kept)), side="right") - 1).tolist():
         a, b = glyphs[g : g + 2].tolist()
-        steps = _settled(contours, a, b, Trial(best[a:b], kept[:, a:b]), fits, options, tolerance)
+        steps = _settled(contours, a, b, GlyphTrial(best[a:b], kept[:, a:b]), fits, options, tolerance)
         own, other, last = (trial.results for trial in steps)
         best[a:b], kept[:, a:b] = last, steps[-1].found
         corners_kept[a:b] = [new is not old for new, old in zip(other, own, strict=True)]
@@ -119,19 +119,17 @@ def faithful(
 
 
 def _settled(
-    contours: ContourArrays, a: int, b: int, first: Trial[Part], fits: Fits, options: Options, tolerance: float
-) -> tuple[Trial[Part], Trial[Part], Trial[Part]]:
-    """The best of a glyph's fits, of those of another mode too, and of its source's contours too.
-
-    Args:
-        a, b: its contours are those from a up to b. first: the first fit.
-    """
+    contours: ContourArrays, a: int, b: int, first: GlyphTrial[Part], fits: Fits, options: Options, tolerance: float
+) -> tuple[GlyphTrial[Part], GlyphTrial[Part], GlyphTrial[Part]]:
+    """The best of the fits of a glyph, of contours a up to b; of those of another mode too; and of its source too."""
     source = contours.part(a, b)
 
-    def judged(results: Sequence[Part]) -> Trial[Part]:
-        return Trial(results, _compared(source, results, np.array([0, b - a]), options))
+    def judged(results: Sequence[Part]) -> GlyphTrial[Part]:
+        return GlyphTrial(results, _compared(source, results, np.array([0, b - a]), options))
 
-    def better(trial: Trial[Part], refits: Iterable[Refit[Part]], which: Callable[[Changes], BoolArray]) -> Trial[Part]:
+    def better(
+        trial: GlyphTrial[Part], refits: Iterable[Refit[Part]], which: Callable[[Changes], BoolArray]
+    ) -> GlyphTrial[Part]:
         return first_good(tries(trial, refits, judged, which), lambda each: each.wrong(_is_outside))
 
     def fitted(of: Fits, turn: int, which: list[int]) -> list[Part]:

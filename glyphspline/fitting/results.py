@@ -167,7 +167,7 @@ class ContourResult:
         In "smooth" it is the interpolation's. With corners, knots are triple at the ends of arcs and of straight lines,
         where the curve is in its control points; between them it is C2. Curves are those of ``curve``, up to rounding.
         """
-        return _end_to_end([self]).splines()[0]
+        return _arrays_of([self]).splines()[0]
 
     def __repr__(self) -> str:
         return f"<ContourResult: {_told([self.measures])}>"
@@ -295,7 +295,7 @@ class ContourResults(Views[ContourResult]):
         return self._part
 
 
-def _end_to_end(results: Sequence[ContourResult]) -> ConvertedContours:
+def _arrays_of(results: Sequence[ContourResult]) -> ConvertedContours:
     arcs = [arc for result in results for arc in result.interpolations]
     splines = [arc.spline for arc in arcs]
     return ConvertedContours(
@@ -321,7 +321,7 @@ class GlyphResult:
     def __post_init__(self) -> None:
         object.__setattr__(self, "options", self.options.for_em(self.outline.metrics.units_per_em))
         if not isinstance(self.contours, ContourResults):
-            object.__setattr__(self, "contours", ContourResults(_end_to_end(self.contours)))
+            object.__setattr__(self, "contours", ContourResults(_arrays_of(self.contours)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return GlyphResult, (self.outline, self.options, tuple(self.contours), self.notes)
@@ -381,7 +381,7 @@ def not_fitted(source: ContourArrays, curves: ContourArrays) -> ConvertedContour
     return ConvertedContours(source, curves, polygons, (), NO_POLYLINES, np.zeros_like(curves.offsets), counts)
 
 
-def end_to_end(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArray]:
+def joined_results(glyphs: Sequence[GlyphResult]) -> tuple[ConvertedContours, IntArray]:
     """The contours of many glyphs end to end, and (G + 1,) where each glyph begins. A complete batch is not copied."""
     contours = [glyph.contours for glyph in glyphs]
     offsets = offsets_of([len(own) for own in contours])

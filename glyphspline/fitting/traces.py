@@ -46,7 +46,7 @@ MOST_SAMPLES = 6_000
 """Samples of a trace, at most."""
 
 
-class Samples(NamedTuple):
+class TraceSamples(NamedTuple):
     """A trace at even steps, once round and without the first point again.
 
     Attributes:
@@ -59,7 +59,7 @@ class Samples(NamedTuple):
     passed: FloatArray
 
 
-class Stretch(NamedTuple):
+class CalmStretch(NamedTuple):
     """A part of a calm contour: cubics (k, 4, 2), and the (k,) places on the trace where they begin; or a line."""
 
     cubics: FloatArray
@@ -148,7 +148,7 @@ def calm_contour(cubics: FloatArray, tolerance: float) -> tuple[ContourArrays, f
     return best
 
 
-def even_samples(cubics: FloatArray, near: float) -> Samples:
+def even_samples(cubics: FloatArray, near: float) -> TraceSamples:
     """Samples of a closed contour (m, 4, 2) at steps of a distance, or more."""
     steps = 8
     places = np.arange(steps * len(cubics) + 1) / steps
@@ -162,16 +162,16 @@ def even_samples(cubics: FloatArray, near: float) -> Samples:
     wide = max(int(np.ceil(3 * near / (lengths[-1] / N))), 1)  # the mean of so many to each side has no zigzags
     smooth = np.stack([np.roll(points, k, axis=0) for k in range(-wide, wide + 1)]).mean(axis=0)
     way = np.hypot(*(np.roll(smooth, -1, axis=0) - smooth).T)
-    return Samples(points, at, np.append(0.0, np.cumsum(np.maximum(way, 1e-3 * near))))
+    return TraceSamples(points, at, np.append(0.0, np.cumsum(np.maximum(way, 1e-3 * near))))
 
 
-def calmed(samples: Samples, near: float) -> list[Stretch] | None:
+def calmed(samples: TraceSamples, near: float) -> list[CalmStretch] | None:
     """A trace as stretches between corners, each within a distance of its samples.
 
     None if it needs so many that they would be shorter than two spans: its noise is farther off.
     """
     corners = list[int]()
-    done = dict[tuple[int, int], Stretch]()
+    done = dict[tuple[int, int], CalmStretch]()
     while len(corners) * SHORTEST * near <= samples.passed[-1] / 2:
         ends = [*corners, corners[0] + len(samples.points)] if corners else [0, len(samples.points)]
         added = set[int]()
@@ -188,7 +188,7 @@ def calmed(samples: Samples, near: float) -> list[Stretch] | None:
     return None
 
 
-def stretch(samples: Samples, a: int, b: int, closed: bool, near: float) -> Stretch | int:
+def stretch(samples: TraceSamples, a: int, b: int, closed: bool, near: float) -> CalmStretch | int:
     """The samples from a to b as a spline, or a line; or the sample at which they have to be cut."""
     N, index = len(samples.points), np.arange(a, b + 1)
     points, turn = samples.points[index % N], index // N
@@ -205,9 +205,9 @@ def stretch(samples: Samples, a: int, b: int, closed: bool, near: float) -> Stre
         np.maximum.at(worst, span, errors)
         if len(cubics) == 1 and from_chord(points).max() <= min(near, max(STRAIGHT * worst[0], EXACT * near)):
             thirds = np.linspace(0.0, 1.0, 4)[:, None]
-            return Stretch(((1 - thirds) * points[0] + thirds * points[-1])[None], places[:1], True)
+            return CalmStretch(((1 - thirds) * points[0] + thirds * points[-1])[None], places[:1], True)
         if worst.max() <= near:
-            return Stretch(cubics, np.interp(knots[:-1], t, places), False)
+            return CalmStretch(cubics, np.interp(knots[:-1], t, places), False)
         halves = np.flatnonzero((worst > near) & (np.diff(knots) >= 2 * SHORTEST * near))
         if len(halves) == 0:
             return a + corner_near(points, t, int(errors.argmax()), closed, near)

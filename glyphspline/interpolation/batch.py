@@ -41,10 +41,7 @@ def _threads(threads: int | None) -> int:
 
 
 def _parts(offsets: IntArray, threads: int | None) -> list[tuple[int, int]]:
-    """Ranges of polygons, each with half of a thread's share of the rest, ``LEAST_VERTICES`` or more.
-
-    Sizes decrease, so that threads of unequal speed finish at almost the same time.
-    """
+    """Ranges of polygons, each half a thread's share of the rest: they shrink, so that all threads end together."""
     count, total = len(offsets) - 1, int(offsets[-1])
     if count < 2 or total < 4 * LEAST_VERTICES or _threads(threads) == 1:
         return [(0, count)]

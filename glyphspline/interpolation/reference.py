@@ -113,7 +113,7 @@ Pass = Callable[[FloatArray], tuple[FloatArray, FloatArray, float]]
 """From control points to footpoints, control points after the update, and the largest error before it."""
 
 
-class Run(NamedTuple):
+class Iteration(NamedTuple):
     """The end of an iteration: control points, their footpoints, the error of every pass, and the history if kept."""
 
     controls: FloatArray
@@ -124,7 +124,7 @@ class Run(NamedTuple):
 
 def iterate(
     one_pass: Pass, controls: FloatArray, limit: float, max_iterations: int, at_once: bool = False, keep: bool = False
-) -> Run:
+) -> Iteration:
     """Make passes until the error is below ``limit``, is not finite, or ``max_iterations`` updates have been made.
 
     Args:
@@ -139,9 +139,9 @@ def iterate(
         if keep:
             history.append((controls, footpoints))
         if error < limit:
-            return Run(updated if at_once else controls, footpoints, residuals, history)
+            return Iteration(updated if at_once else controls, footpoints, residuals, history)
         if len(residuals) > max_iterations or not np.isfinite(error):
-            return Run(controls, footpoints, residuals, history)
+            return Iteration(controls, footpoints, residuals, history)
         controls = updated
 
 

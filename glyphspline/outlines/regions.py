@@ -60,11 +60,7 @@ def ink_difference(before: ContourArrays, after: ContourArrays, flatness: float)
 
 
 def _unmatched(one: Regions, other: Regions, areas: FloatArray) -> tuple[int, int]:
-    """How many islands and counters of each have none in the other of which each shares most with the other.
-
-    Args:
-        areas: (R,) of rows.
-    """
+    """How many islands and counters of each have no partner, each sharing most with the other; ``areas``: (R,) rows."""
     size = len(one.inked), len(other.inked)
     pairs = one.of_rows * size[1] + other.of_rows
     shared = np.bincount(pairs, areas, size[0] * size[1]).astype(np.float64).reshape(size)

@@ -57,7 +57,7 @@ def open_source(path: str | Path, face_index: int = 0, location: Location = None
     Raises:
         FontError: the path cannot be read, or it has no such face or location.
     """
-    path = _place(path)
+    path = _path_of(path)
     reader = reader_of(path)
     if reader is None:
         return open_font(path, face_index, location)
@@ -74,7 +74,7 @@ def reader_of(path: str | Path) -> Reader | None:
     Raises:
         FontError: it cannot be read, or it is of a kind that nothing here reads.
     """
-    path = _place(path)
+    path = _path_of(path)
     head = b"" if path.is_dir() else beginning(path)
     if head[:4] in FORMATS:
         return None
@@ -134,7 +134,7 @@ def beginning(path: Path) -> bytes:
         return file.read(4096)
 
 
-def _place(path: str | Path) -> Path:
+def _path_of(path: str | Path) -> Path:
     return standard_input() if str(path) == STDIN else Path(path)
 
 
@@ -168,7 +168,7 @@ def file_facts(path: str | Path, face_index: int | None = None, location: Locati
     """
     faces: list[Source]
     if is_font(path):
-        faces = [*open_faces(_place(path), face_index, location)]
+        faces = [*open_faces(_path_of(path), face_index, location)]
     else:
         faces = [open_source(path, face_index or 0, location)]
     fonts = []

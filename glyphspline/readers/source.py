@@ -295,7 +295,7 @@ def opening(path: Path, kind: str = "font") -> Iterator[None]:
     except OSError as error:
         raise FontError(f"cannot be read: {words_of(error)}", font=str(path)) from error
     except Exception as error:  # broken data raises any of a dozen types, AssertionError among them
-        raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
+        raise FontError(f"a broken {kind}: {library_words(error)}", font=str(path)) from error
 
 
 @contextmanager
@@ -306,7 +306,7 @@ def reusing(path: Path, kind: str = "font") -> Iterator[None]:
     except (GlyphsplineError, OSError, MemoryError):
         raise
     except Exception as error:  # as in opening
-        raise FontError(f"a broken {kind}: {reason(error)}", font=str(path)) from error
+        raise FontError(f"a broken {kind}: {library_words(error)}", font=str(path)) from error
 
 
 def attempt(path: Path, name: str, read: Callable[[], Read]) -> Read | GlyphsplineError:
@@ -316,7 +316,7 @@ def attempt(path: Path, name: str, read: Callable[[], Read]) -> Read | Glyphspli
     except GlyphsplineError as error:
         return error.locate(font=str(path), glyph=name)
     except Exception as error:  # as in opening
-        found = GlyphsplineError(f"cannot be drawn: {reason(error)}", font=str(path), glyph=name)
+        found = GlyphsplineError(f"cannot be drawn: {library_words(error)}", font=str(path), glyph=name)
         found.__cause__ = error
         return found
 
@@ -347,7 +347,7 @@ def first_claims(unicodes: Iterable[tuple[str, Iterable[int]]]) -> Mapping[int, 
     return MappingProxyType(found)
 
 
-def reason(error: Exception) -> str:
+def library_words(error: Exception) -> str:
     """The message of a library's exception, or its type if it has none."""
     if isinstance(error, RecursionError):
         return "components or subroutines nested without end"

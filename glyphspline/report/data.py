@@ -17,7 +17,7 @@ from . import FOLDER
 if TYPE_CHECKING:
     from ..outlines.masters import MasterContour
 
-MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
+COMBINED: dict[str, Callable[[Sequence[Any]], Any]] = {
     "deviation": max,
     "deviation_bound": max,
     "iterations": max,
@@ -42,11 +42,11 @@ MEASURES: dict[str, Callable[[Sequence[Any]], Any]] = {
     "corners_kept": any,
     "source_kept": any,
 }
-"""How the values of contours combine to the glyph's, for each measure: the worst, or the sum."""
+"""How the values of contours combine to the glyph's, for each measure: the worst, or the sum. Pages list them so."""
 
 COLUMNS = (
     "glyph", "gid", "unicodes", "advance", "status", "file", "error", "contours",
-    *SOLVED, *(name for name in MEASURES if name not in SOLVED),
+    *SOLVED, *(name for name in COMBINED if name not in SOLVED),
 )  # fmt: skip
 """Columns of the table; nulls at the end of a row are omitted."""
 
@@ -120,9 +120,9 @@ def row_of(entry: Mapping[str, Any]) -> str:
 
 def glyph_measures(contours: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """All of ``MEASURES`` for one glyph, None where no contour has it."""
-    found: dict[str, Any] = dict.fromkeys(MEASURES)
-    columns = zip(*[map(contour.get, MEASURES) for contour in contours], strict=True)
-    for (key, together), column in zip(MEASURES.items(), columns, strict=False):
+    found: dict[str, Any] = dict.fromkeys(COMBINED)
+    columns = zip(*[map(contour.get, COMBINED) for contour in contours], strict=True)
+    for (key, together), column in zip(COMBINED.items(), columns, strict=False):
         values = [value for value in column if value is not None] if None in column else column
         if values:
             found[key] = together(values)

@@ -19,7 +19,7 @@ from ..fitting.options import Options
 from ..fitting.results import QUANTITIES
 from ..writers.svg.comb import palette
 from . import FOLDER
-from .data import COLUMNS, FULL, MEASURES, as_json, row_of, script
+from .data import COLUMNS, COMBINED, FULL, as_json, row_of, script
 from .pages import page_of
 
 TABLE = 5000
@@ -128,7 +128,7 @@ def write_index(out_dir: Path, runs: Sequence[str], heading: str) -> None:
 
 def measures() -> list[list[str]]:
     """Name, label, unit and meaning of each measure."""
-    return [[name, *QUANTITIES[name]] for name in MEASURES]
+    return [[name, *QUANTITIES[name]] for name in COMBINED]
 
 
 def layer_switches() -> str:

@@ -10,7 +10,7 @@ from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ..curves.curvature import Comb, shared_scale
 from ..errors import OutputError
@@ -23,28 +23,25 @@ from ..report.gallery import is_whole, write_index, write_report
 from ..types import Names
 from ..writers.formats import format_named
 from ..writers.svg.comb import combs
-from .engine import Item, Job, Observer, reason, run, settle
+from .engine import Item, Job, Observer, choose_to_compile, reason, run
 from .file_names import file_names
 from .folder import (
     MANIFEST,
     Done,
     Output,
     Task,
+    add_stored,
     done,
     entries_of,
-    is_stated,
+    has_stored,
     progress_of,
-    state,
-    unstated,
+    without_stored,
 )
-from .result_text import stored
+from .result_text import read_result
 from .schedule import Place, heads_of, place_of, sources, workers
 from .spec import MAPS, OF_RUNS, REQUEST, RESULTS, RunSpec, describe, read_run, write_run
 from .summary import Summary
 from .whole_formats import ResultsFormat
-
-if TYPE_CHECKING:
-    pass
 
 SCALE_SAMPLE = 200
 """Number of glyphs, evenly spread over those selected, from which the shared curvature scale is computed."""
@@ -157,7 +154,7 @@ def convert_font(
             tasks = tasks_of(source, glyphs, spec.names, progress.stems)
             left = [task for task in tasks if task.head.gid not in finished]
             job = ConvertJob(out.absolute(), spec, font=(source.family, source.style), place=place_of(source))
-            settle(job, left, pool, len(left))  # before the scale, which is of a sample
+            choose_to_compile(job, left, pool, len(left))  # before the scale, which is of a sample
             job = with_scale(job, source, glyphs, tasks, pool)
             for part in progress.advance(job, left, pool, observer):
                 for glyph in part.result:
@@ -169,12 +166,12 @@ def convert_font(
         if spec.table and table and (is_changed or not table.exists()):
             summary.remarks.append(f"{table.name}: {progress.write_table(spec.table, table)} contours")
         if is_changed or (gallery and not is_whole(out, len(progress.known))):
-            progress.conclude(gallery, unstated)
+            progress.conclude(gallery, without_stored)
         files = [(each, each.path(source, out)) for each in spec.files]
-        if not (left or not is_stated(out) or not all(path.exists() for _, path in files)):
+        if not (left or not has_stored(out) or not all(path.exists() for _, path in files)):
             files = [(each, path) for each, path in files if each.always]
         if files:
-            summary.remarks += write_files(source, out, spec, files)
+            summary.remarks += write_font_files(source, out, spec, files)
         for entry in entries_of(out):
             summary.add(entry)
     summary.missing = getattr(glyphs, "missing", ())
@@ -248,8 +245,10 @@ def write_gallery(folder: Path) -> None:
         write_index(folder, [path.relative_to(folder).as_posix() for path in below], f"{len(below)} fonts")
 
 
-def write_files(source: Source, out: Path, spec: RunSpec, files: Sequence[tuple[ResultsFormat, Path]]) -> list[str]:
-    """Write files of the whole font, of all glyphs of the folder's manifest; returns remarks for the summary.
+def write_font_files(
+    source: Source, out: Path, spec: RunSpec, files: Sequence[tuple[ResultsFormat, Path]]
+) -> list[str]:
+    """Write the formats with one file a font, of all glyphs of the folder's manifest; returns remarks for the summary.
 
     Raises:
         OutputError: a file cannot be written, or a stored result cannot be read.
@@ -260,7 +259,7 @@ def write_files(source: Source, out: Path, spec: RunSpec, files: Sequence[tuple[
         with writing(path):
             written, held[whole.name] = whole.write(source, results_of(source, out, spec), path, spec)
         remarks += written
-    state(out, held)
+    add_stored(out, held)
     return remarks
 
 
@@ -270,4 +269,4 @@ def results_of(source: Source, out: Path, spec: RunSpec) -> Iterator[GlyphResult
         if entry["status"] == "empty":
             yield GlyphResult(source.outline(entry["glyph"]), spec.options, ())
         elif RESULTS in entry["files"]:
-            yield stored(out / RESULTS / Path(entry["files"][RESULTS]).name, GlyphResult)
+            yield read_result(out / RESULTS / Path(entry["files"][RESULTS]).name, GlyphResult)

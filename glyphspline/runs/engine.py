@@ -62,12 +62,12 @@ class Job(ABC, Generic[Task, Result]):
     Attributes:
         chunk: maximum number of tasks in a call: enough to make the exchange cheap, few enough for a smooth progress
             bar. budget: maximum cost of a batch. A worker's time limit and memory are for one batch.
-        settles: whether its tasks decide if a run compiles first.
+        chooses: whether its tasks decide if a run compiles first.
     """
 
     chunk: ClassVar[int] = 40
     budget: ClassVar[float] = float("inf")
-    settles: ClassVar[bool] = True
+    chooses: ClassVar[bool] = True
 
     def read(self, tasks: Sequence[Task]) -> Sequence[Item | Exception]:
         """Read tasks, in a worker: an item for each, or why it cannot be read."""
@@ -122,7 +122,7 @@ def run(
     total = before + len(tasks) if total is None else total
     left = iter(() if chunks is None else chunks)
     first = tasks or next(left, ())
-    settle(job, first, pool, total - before)
+    choose_to_compile(job, first, pool, total - before)
     alone = is_plain(pool)  # a glyph takes seconds
     if chunks is None:
         # Chunks for each worker at least, so that the workers finish at about the same time.
@@ -165,14 +165,14 @@ def run(
             future.cancel()
 
 
-def settle(job: Job[Task, Result], tasks: Sequence[Task], pool: Executor, left: int) -> None:
+def choose_to_compile(job: Job[Task, Result], tasks: Sequence[Task], pool: Executor, left: int) -> None:
     """Have a pool compile first, if it is not decided yet and what is left to do would take longer as plain Python.
 
     Args:
         tasks: some of those that are left, which stand for all. left: their number.
     """
     choice = choice_of(pool)
-    if choice is None or choice.is_made or not (job.settles and tasks):
+    if choice is None or choice.is_made or not (job.chooses and tasks):
         return
     choice.is_made = True
     if choice.is_clear(left):
@@ -199,7 +199,7 @@ def work(job: Job[Task, Result], tasks: Sequence[Task], alone: bool = False) -> 
 
     def finish() -> None:
         if batch:
-            parts.extend(_done(job, batch))
+            parts.extend(_do(job, batch))
             batch.clear()
             sign_of_life()
 
@@ -217,7 +217,7 @@ def work(job: Job[Task, Result], tasks: Sequence[Task], alone: bool = False) -> 
     return parts
 
 
-def _done(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Part[Task, Result]]:
+def _do(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Part[Task, Result]]:
     """Do a batch; after an unexpected error, one by one."""
     started = time.perf_counter()
     tasks = [task for task, _ in batch]
@@ -227,7 +227,7 @@ def _done(job: Job[Task, Result], batch: Sequence[tuple[Task, Item]]) -> list[Pa
         raise
     except Exception as error:  # broken data raises anything
         if len(batch) > 1:
-            return [part for one in batch for part in _done(job, [one])]
+            return [part for one in batch for part in _do(job, [one])]
         return [_failed(job, tasks[0], error, time.perf_counter() - started)]
     return [Part(tasks, result, time.perf_counter() - started, job.failures(result))]
 
@@ -242,6 +242,6 @@ def reason(error: Exception) -> str:
         return error.message if error.contour is None else f"contour {error.contour}: {error.message}"
     if isinstance(error, MemoryError):
         return "not enough memory"
-    from ..readers.source import reason
+    from ..readers.source import library_words
 
-    return reason(error)
+    return library_words(error)

@@ -96,9 +96,11 @@ class Task(NamedTuple):
 
 @dataclass(frozen=True)
 class Output:
-    """What a worker needs to write the files of glyphs: the folder, and how.
+    """What a worker needs to write the files of glyphs.
 
-    ``curvature_scale``: of all maps; None: the one asked for, or 4 in 1/em. ``font``: family and style, for rows.
+    Attributes:
+        out: the run's folder. curvature_scale: of all maps, in 1/unit of a full tooth; None: the one asked for, or 4
+            in 1/em. font: family and style, for rows.
     """
 
     out: Path
@@ -164,7 +166,7 @@ class Progress:
         self.stems: dict[int, str] = {}
         for entry in record.entries() if record.is_open else self._of_manifest():
             facts = json.loads(entry.line)
-            if not _written(out, facts["files"], entry.sizes, present):
+            if not _are_there(out, facts["files"], entry.sizes, present):
                 continue
             if (
                 rows is None
@@ -252,11 +254,8 @@ def _lines(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
                 yield text, entry
 
 
-def _written(out: Path, files: dict[str, str], lengths: str | None, present: dict[str, dict[str, int]]) -> bool:
-    """Whether all files of an entry exist with the sizes ``lengths``, or are not empty if these are None.
-
-    ``present``: sizes of files by folder, as far as they are known; folders are added.
-    """
+def _are_there(out: Path, files: dict[str, str], lengths: str | None, present: dict[str, dict[str, int]]) -> bool:
+    """Whether all files exist with these sizes (None: are not empty); ``present``: known sizes by folder, added to."""
     there = []
     for path in files.values():
         folder, _, name = path.rpartition("/")
@@ -265,10 +264,10 @@ def _written(out: Path, files: dict[str, str], lengths: str | None, present: dic
         there.append(present[folder].get(name))
     if not (all(there) if lengths is None else lengths == ",".join(map(str, there))):
         return False
-    return all(_stored(f"{out}/{path}", size or 0) for path, size in zip(files.values(), there, strict=True))
+    return all(_is_on_disk(f"{out}/{path}", size or 0) for path, size in zip(files.values(), there, strict=True))
 
 
-def _stored(path: str, size: int) -> bool:
+def _is_on_disk(path: str, size: int) -> bool:
     """Whether a file's last byte is not 0. Data lost in a power cut may read as zeros; no output file ends with 0."""
     try:
         with open(path, "rb", buffering=0) as file:
@@ -354,21 +353,21 @@ STORED = "stored"
 """In a line of the manifest: what the run's files of a whole font hold of the glyph, by format."""
 
 
-def state(out: Path, stored: Mapping[str, Mapping[str, Any]]) -> None:
-    """Say in the manifest of a finished folder what files hold: facts by format and glyph."""
+def add_stored(out: Path, stored: Mapping[str, Mapping[str, Any]]) -> None:
+    """Write to the manifest of a finished folder what files of a whole font hold: facts by format and glyph."""
     with replacing(out / MANIFEST, durable=True) as manifest:
         for entry in entries_of(out):
             known = {**entry.get(STORED, {}), **{kind: facts.get(entry["glyph"]) for kind, facts in stored.items()}}
             manifest.write(f"{encoded(entry | {STORED: known})}\n".encode())
 
 
-def is_stated(out: Path) -> bool:
-    """Whether it is said there; a manifest that is written anew does not."""
+def has_stored(out: Path) -> bool:
+    """Whether the manifest says what such files hold; one that is written anew does not."""
     return all(STORED in entry for entry in islice(entries_of(out), 1))
 
 
-def unstated(line: bytes) -> bytes:
-    """A line of a manifest that does not say it."""
+def without_stored(line: bytes) -> bytes:
+    """A line of a manifest without what such files hold."""
     if f'"{STORED}"'.encode() not in line:
         return line
     entry = json.loads(line)

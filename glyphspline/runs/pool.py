@@ -129,15 +129,12 @@ def kill_server() -> None:
 
 
 def _serve(calls: Any, sign: Any, seconds: float, preload: Sequence[str]) -> None:
-    """The main loop of a worker process: receive calls and send results until the pipe is closed.
-
-    Calls and time limits begin after all imports, which usually happen before the fork.
-    """
+    """The main loop of a worker process: receive calls and send results until the pipe is closed."""
     global _last_sign, _limit
     _last_sign, _limit = sign, seconds
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent kills its workers
     os.environ[QUIET] = "1"  # the parent says what there is to say about compiling
-    load(preload)
+    load(preload)  # before calls and their time limits begin; usually it is done before the fork
     gc.freeze()  # the garbage collector does not scan imported objects, nor copy their pages
     gc.enable()  # it may be off in the process from which this one is forked
     with suppress(EOFError, OSError):

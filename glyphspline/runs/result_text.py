@@ -52,8 +52,8 @@ def from_text(text: str, kind: type[Result], more: Sequence[type] = ()) -> Resul
     return result
 
 
-def stored(path: Path, kind: type[Result], more: Sequence[type] = ()) -> Result:
-    """The result in a file.
+def read_result(path: Path, kind: type[Result], more: Sequence[type] = ()) -> Result:
+    """Read the result in a file that :func:`to_text` made.
 
     Raises:
         OutputError: the file cannot be read, or holds no such result.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..readers import Source
 
 Place = tuple[Path, int, tuple[tuple[str, float], ...]]
-"""A file, a face and a location."""
+"""By which a process opens a source again: a file, a face and a location, axis tags with user-space values."""
 
 
 def place_of(source: Source) -> Place:
@@ -110,7 +110,7 @@ def workers(
     Args:
         seconds: time limit of a batch, after which its worker is killed.
         kinds: of work, see :func:`.spec.kinds_for`; compiled code that it needs, and that is there, is loaded before
-            the first call. :func:`.engine.settle` may have it made.
+            the first call. :func:`.engine.choose_to_compile` may have it made.
         expected: number of calls known to come. count: of sources whose tasks come.
         scheduler: address of a dask cluster, whose workers are used instead.
         executor: used instead of all these; it is not closed.

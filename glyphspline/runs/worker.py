@@ -13,7 +13,7 @@ from ..errors import GlyphsplineError
 from ..files import write_whole
 from ..fitting.convert import convert_many, unfitted
 from ..fitting.options import Options
-from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, end_to_end
+from ..fitting.results import BOUNDS, MEASURES, GlyphResult, MeasureColumns, joined_results
 from ..outlines.outline import Outline
 from ..readers.source import OutlineOrError
 from ..report import FOLDER as GALLERY
@@ -91,8 +91,8 @@ def rows_of(job: Output, results: list[GlyphResult]) -> bytes:
     return table.rows(job.font, results) if table and any(result.contours for result in results) else b""
 
 
-class Glyph(NamedTuple):
-    """The input of the writers.
+class DrawnGlyph(NamedTuple):
+    """A result with what is made of it for a whole batch: the input of the formats.
 
     Attributes:
         path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
@@ -111,19 +111,19 @@ class Glyph(NamedTuple):
     finer: PathData | None = None
 
 
-def drawn(job: Output, results: Sequence[GlyphResult]) -> list[Glyph]:
+def drawn(job: Output, results: Sequence[GlyphResult]) -> list[DrawnGlyph]:
     """Path data and measures of a batch. What was not fitted is not measured."""
     if not results:
         return []
     spec = job.spec
-    arrays, offsets = end_to_end(results)
+    arrays, offsets = joined_results(results)
     paths = curves_data(arrays.curves, results[0].options.precision, offsets)
     nothing = [None] * len(results)
     if not spec.is_fitted:
-        return list(map(Glyph, results, paths, paths, nothing, nothing))
+        return list(map(DrawnGlyph, results, paths, paths, nothing, nothing))
     sources = source_data(results) if {"source", GALLERY} & {*spec.formats} else nothing
     polygons = polygon_data(results) if GALLERY in spec.formats else nothing
-    glyphs = list(map(Glyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets)))
+    glyphs = list(map(DrawnGlyph, results, paths, sources, polygons, contour_entries(arrays.measures, offsets)))
     if GALLERY in spec.formats:
         finer = curves_data(arrays.curves, results[0].options.precision + 1, offsets)
         glyphs = [glyph._replace(finer=path) for glyph, path in zip(glyphs, finer, strict=True)]
@@ -149,9 +149,13 @@ def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[di
 
 
 def write_files(
-    job: Output, task: Task, glyph: Glyph, facts: Mapping[str, Any], encode: Callable[[Any], str] = encoded
+    job: Output, task: Task, glyph: DrawnGlyph, facts: Mapping[str, Any], encode: Callable[[Any], str] = encoded
 ) -> Done:
-    """Write a glyph's files; of an empty one none, or the result in all masters. ``facts``: for the manifest."""
+    """Write a glyph's files; of an empty one none, or the result in all masters.
+
+    Args:
+        facts: of the glyph, for its line of the manifest. encode: that line's data as JSON.
+    """
     empty = not glyph.result.contours
     names = ([] if glyph.kept is None else [RESULTS]) if empty else job.spec.folders
     files = {name: f"{name}/{task.stem}{suffix_of(name)}" for name in names}
@@ -161,7 +165,7 @@ def write_files(
     return done(task, entry, sizes, row_of if GALLERY in job.spec.folders else None, encode)
 
 
-def written(name: str, job: Output, glyph: Glyph, files: dict[str, str]) -> str | bytes:
+def written(name: str, job: Output, glyph: DrawnGlyph, files: dict[str, str]) -> str | bytes:
     """A glyph's file of a format.
 
     Path data, measures and the scale of maps are made once for a batch or run, and handed to the formats named here.

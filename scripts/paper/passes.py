@@ -11,7 +11,7 @@ from glyphspline.interpolation.api import interpolate_batch
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.plain import State
 from glyphspline.interpolation.polygon import NO_KNOTS, NONE_HELD, Polygons, as_points
-from glyphspline.interpolation.reference import Run
+from glyphspline.interpolation.reference import Iteration
 from glyphspline.types import FloatArray
 
 
@@ -61,7 +61,7 @@ class Passes:
         self.state.P[:, self.first : self.first + self.n] = controls.T
         self.state.fill_edges()
 
-    def result_of(self, run: Run) -> gs.Interpolation:
+    def result_of(self, run: Iteration) -> gs.Interpolation:
         """The result of a run."""
         residuals = np.array(run.residuals) / self.unit
         old, closed = self.result, self.method.closed

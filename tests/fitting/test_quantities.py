@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+
 import glyphspline as gs
 from glyphspline.fitting.results import MEASURES, PER_EM, QUANTITIES, shown
-from glyphspline.report.data import MEASURES as COMBINED
+from glyphspline.report.data import COMBINED
+from scripts.house import PACKAGE
 from tests.drawings import circle
+from tests.places import ROOT
 
 
 def test_every_measure_has_a_label_and_a_meaning() -> None:
@@ -13,6 +17,15 @@ def test_every_measure_has_a_label_and_a_meaning() -> None:
     assert set(COMBINED) == set(MEASURES)
     assert all(quantity.label and quantity.about for quantity in QUANTITIES.values())
     assert len({quantity.label for quantity in QUANTITIES.values()}) == len(QUANTITIES)
+
+
+def test_every_measure_is_in_the_schema_and_in_the_pages() -> None:
+    schema = json.loads((PACKAGE / "writers" / "glyph.schema.json").read_text(encoding="utf-8"))["$defs"]["measures"]
+    assert tuple(schema["properties"]) == MEASURES
+    assert tuple(schema["required"]) == MEASURES
+    for page in ("manifest.md", "datasets.md"):
+        text = (ROOT / "docs" / page).read_text(encoding="utf-8")
+        assert not [name for name in MEASURES if f"`{name}`" not in text]
 
 
 def test_curvature_is_told_in_units_of_the_em_whatever_the_em() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline import hooks
-from glyphspline.fitting.results import as_glyph, end_to_end
+from glyphspline.fitting.results import as_glyph, joined_results
 from tests.drawings import L_SHAPE, polygon_contour
 from tests.places import FONTS
 
@@ -62,7 +62,7 @@ def test_arcs_keep_their_control_points_and_intervals_between_triple_knots(resul
 
 
 def test_a_batch_is_its_glyphs(results: list[gs.GlyphResult]) -> None:
-    found, offsets = end_to_end(results)
+    found, offsets = joined_results(results)
     every = iter(found.splines())
     for contour in (contour for result in results for contour in result.contours):
         one, other = next(every), contour.spline

@@ -18,7 +18,7 @@ from matplotlib.path import Path as MatplotlibPath
 from svgpathtools import Line, parse_path
 
 import glyphspline as gs
-from glyphspline.fitting.results import end_to_end
+from glyphspline.fitting.results import joined_results
 from glyphspline.outlines.outline import Contours
 from glyphspline.types import FloatArray
 from glyphspline.writers.settings import VIEW_BOXES, ViewBox
@@ -126,7 +126,7 @@ def test_numbers_of_any_size_are_written() -> None:
 
 def test_path_data_does_not_depend_on_the_batch() -> None:
     glyphs = [result(wavy(seed), polygon_contour(L_SHAPE)) for seed in range(4)] + [result(), result(wavy(9))]
-    arrays, offsets = end_to_end(glyphs)
+    arrays, offsets = joined_results(glyphs)
     for glyph, found in zip(glyphs, curves_data(arrays.curves, 2, offsets), strict=True):
         alone = curves_data(glyph.arrays.curves, 2)[0]
         assert found == alone

@@ -175,11 +175,7 @@ def _certified(
     chains: Chains, pieces: Pieces, mixes: FloatArray | None, options: Options, tolerance: float,
     before: SharpFit | None, same: IntArray,
 ) -> SharpFit:  # fmt: skip
-    """The pieces with curves put through them, measured against the source.
-
-    Args:
-        before: a fit that has some of the pieces. same: (P,) their numbers in it; -1 for the others.
-    """
+    """The pieces with curves put through them, certified; ``same``: (P,) their numbers in the fit ``before``, or -1."""
     count, masters = len(chains.flipped), len(chains.cubics)
     old = {} if before is None else {q: before.splines[n] for q, n in enumerate(same.tolist()) if n in before.splines}
     splines = dict(sorted((old | _interpolated(pieces, same < 0, options)).items()))
@@ -216,12 +212,9 @@ def chords(pieces: Pieces) -> FloatArray:
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval at all their vertices.
-
-    K masters are one curve in R^{2K}, whose lengths are root mean squares of those in the masters.
-    """
+    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval at all their vertices."""
     starts, masters = pieces.starts, pieces.vertices.shape[1]
-    size = np.sqrt(masters)
+    size = np.sqrt(masters)  # one curve in R^{2K}, whose lengths are root mean squares of those in the masters
     vertices = pieces.vertices.reshape(-1, 2 * masters) / size
     tangents = pieces.tangents.swapaxes(1, 2).reshape(-1, 2, 2 * masters) / size
     closed = pieces.closed > 0

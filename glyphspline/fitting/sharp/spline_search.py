@@ -44,7 +44,7 @@ class Vertices(NamedTuple):
     tips: FloatArray
 
 
-class Curve(NamedTuple):
+class TriedCurve(NamedTuple):
     """A curve of k spans in K masters; see :func:`.vertex_steps.move_vertices`.
 
     Attributes:
@@ -119,7 +119,7 @@ class Search:
         """What is followed."""
         return self.samples.Q, self.samples.directions, self.samples.free
 
-    def curves(self, first: Vertices | None, guess: int, wanted: int) -> Iterator[Curve]:
+    def curves(self, first: Vertices | None, guess: int, wanted: int) -> Iterator[TriedCurve]:
         """Curves whose vertices have moved, each with more vertices where the last one misses the tolerance; where that
         leads nowhere, from a new guess on.
 
@@ -145,7 +145,7 @@ class Search:
             if vertices is None:
                 last = inf
 
-    def thinned(self, best: Curve, least: int) -> Curve:
+    def thinned(self, best: TriedCurve, least: int) -> TriedCurve:
         """A curve with vertices taken out, the cheapest first, as long as what is left passes.
 
         One curve loses vertices, and is not chosen among several. In a pass a share of them is tried, each once. After
@@ -182,18 +182,18 @@ class Search:
         """Vertices of k spans on the outline."""
         return Vertices(*place_vertices(self.outline, self.samples.D, k, self.closed))
 
-    def with_more(self, curve: Curve, growth: float) -> Vertices | None:
+    def with_more(self, curve: TriedCurve, growth: float) -> Vertices | None:
         """The vertices of a curve, and more in its worst spans; None if these are too many."""
         if curve.spans >= self.most:
             return None
         return Vertices(*insert_vertices(curve.vertices[:], curve.beziers, curve.errors, self.near, growth, self.most))
 
-    def costs(self, curve: Curve) -> list[float]:
+    def costs(self, curve: TriedCurve) -> list[float]:
         """What it is estimated to cost to take out each vertex of a curve."""
         costs: list[float] = removal_costs(curve.beziers, curve.h, curve.errors, self.closed).tolist()
         return costs
 
-    def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> Curve:
+    def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:
         """The curve once its vertices have moved, in ``rounds`` steps at most: up to ``reach`` on either side of vertex
         i, or all."""
         settings, k = self.settings, vertices.points.shape[1] - 1 + self.closed
@@ -202,9 +202,9 @@ class Search:
             vertices[:], self.closed, self.outline, limits, settings.few_rounds if k <= 3 else rounds, i,
             k if reach is None else reach,
         )  # fmt: skip
-        return Curve(error, Vertices(points, tips), beziers, h, errors)
+        return TriedCurve(error, Vertices(points, tips), beziers, h, errors)
 
-    def piece(self, piece: Pieces, curve: Curve) -> Pieces:
+    def piece(self, piece: Pieces, curve: TriedCurve) -> Pieces:
         """The curve in the place of a piece."""
         (points, tips), beziers, h, k = curve.vertices, curve.beziers, curve.h, curve.spans
         samples, tangents = self.samples, piece.tangents.copy()

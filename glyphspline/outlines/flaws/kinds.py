@@ -8,7 +8,7 @@ from math import radians
 from typing import TYPE_CHECKING, Any, Literal
 
 from ...errors import OptionError, is_positive
-from ...fields import Rule, check, option, options_of
+from ...fields import Condition, check, option, options_of
 
 Level = Literal["WARN", "INFO"]
 LEVELS: tuple[Level, ...] = ("INFO", "WARN")
@@ -69,7 +69,7 @@ MENDED = ("kink", "jump", "handles", "extremum", "unlevel", "slanted", "repeated
 MENDED_UNASKED = ("kink",)
 """Those of them that it mends unless others are asked for: none of the others is a fault for certain."""
 
-ABOVE_ZERO = Rule("above 0 and up to a million", lambda value: is_positive(value, 1e6))
+ABOVE_ZERO = Condition("above 0 and up to a million", lambda value: is_positive(value, 1e6))
 
 
 def _threshold(default: float, unit: str, help: str) -> Any:

@@ -85,9 +85,7 @@ def polyline_csv(glyph: GlyphResult, settings: Settings) -> str:
 
 
 def _written(glyph: GlyphResult, settings: Settings) -> tuple[list[FloatArray], float, tuple[bool, ...]]:
-    """The polygons as they are written, scaled and rounded to decimals, and the bound with that, in the same unit; and
-    which are open.
-    """
+    """The polygons as written, scaled and rounded; their bound with that, in the same unit; and which are open."""
     flatness = settings.flatness_for(glyph.outline.metrics.units_per_em)
     found = to_polylines(glyph, flatness * (1 - RESERVE))
     decimals = max(0, math.ceil(-math.log10(flatness * RESERVE * settings.scale * math.sqrt(2))))

@@ -49,7 +49,7 @@ def check(
     """
     from ...runs.font_search import find_fonts
     from ...writers.settings import FigureKind
-    from .job import Face, check_fonts, worst_first
+    from .job import FaceFindings, check_fonts, worst_first
     from .tables import NUMBERS, as_csv, as_json, as_markdown, columns, sentences
 
     texts = (report.csv, report.ghmarkdown, report.html)
@@ -68,7 +68,7 @@ def check(
     alone = len(fonts) == 1 and files == [Path(fonts[0])]
     if report.plot is not None and not alone:
         stop("--plot takes one font")
-    faces: list[Face] = []
+    faces: list[FaceFindings] = []
     undone = False
 
     def names_in(source: Source) -> Sequence[str]:

@@ -306,7 +306,7 @@ def heights_of(source: Source) -> tuple[float, ...]:
 
 
 @dataclass
-class Face:
+class FaceFindings:
     """What was found in one face of a font.
 
     Attributes:
@@ -363,7 +363,7 @@ class Face:
         self.findings += [item for item in findings if LEVELS.index(item.level) >= LEVELS.index(asked.kept)]
 
 
-def worst_first(faces: Sequence[Face]) -> list[tuple[Face, Finding]]:
+def worst_first(faces: Sequence[FaceFindings]) -> list[tuple[FaceFindings, Finding]]:
     """The findings of all faces in one list."""
     every = [(face, finding) for face in faces for finding in face.findings]
     return sorted(every, key=lambda pair: severity(pair[1])) if len(faces) > 1 else every
@@ -380,7 +380,7 @@ def check_fonts(
     executor: Executor | None = None,
     watch: Callable[[], AbstractContextManager[Observer | None]] = nullcontext,
     alone: bool = False,
-) -> Iterator[Face]:
+) -> Iterator[FaceFindings]:
     """Check the faces of fonts, one after the other. A font that cannot be read has an error instead of findings.
 
     Args:
@@ -405,7 +405,7 @@ def check_fonts(
             except GlyphsplineError as error:
                 if alone:
                     raise
-                yield Face(str(font), error=str(error))
+                yield FaceFindings(str(font), error=str(error))
 
 
 def check_face(
@@ -417,7 +417,7 @@ def check_face(
     observer: Observer | None,
     *,
     alone: bool,
-) -> Face:
+) -> FaceFindings:
     """Check glyphs of one face of the font called ``name``.
 
     Raises:
@@ -426,7 +426,7 @@ def check_face(
     if alone and not names:
         raise GlyphsplineError("none of the glyphs asked for is in the font")
     home = {axis.tag: axis.default for axis in source.axes} | dict(source.location)
-    face = Face(name, source.family, source.style, source if asked.drawn else None, home)
+    face = FaceFindings(name, source.family, source.style, source if asked.drawn else None, home)
     tags = [axis.tag for axis in source.axes]
     if tags and find("services", "on_axes") is None:
         face.remark, tags = f"{name}: checked where it is open, not along its axes{away_words()}", []

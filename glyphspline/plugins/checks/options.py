@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from ...cli.arguments import NATURAL, PLACE
+from ...cli.arguments import NATURAL, PATH
 from ...fields import option
 from ...outlines.flaws.kinds import KINDS, Level
 
@@ -54,14 +54,14 @@ class ReportOptions:
     )  # fmt: skip
     baseline: Path | None = option(None, "Leave out the findings of this file that are no worse now.", REPORTED, "FILE")
     write_baseline: Path | None = option(
-        None, "Write all findings to this file, as known ones.", REPORTED, "FILE", more=PLACE
+        None, "Write all findings to this file, as known ones.", REPORTED, "FILE", more=PATH
     )
     rows: int = option(20, "Print this number of lines of the table.", REPORTED, "N", more=NATURAL)
-    csv: Path | None = option(None, "Write findings as CSV; - is standard output.", REPORTED, "FILE", more=PLACE)
+    csv: Path | None = option(None, "Write findings as CSV; - is standard output.", REPORTED, "FILE", more=PATH)
     ghmarkdown: Path | None = option(
-        None, "Write findings as Markdown for GitHub; - is standard output.", REPORTED, "FILE", more=PLACE
+        None, "Write findings as Markdown for GitHub; - is standard output.", REPORTED, "FILE", more=PATH
     )
-    html: Path | None = option(None, "Write a page with a drawing of each finding.", REPORTED, "FILE", more=PLACE)
+    html: Path | None = option(None, "Write a page with a drawing of each finding.", REPORTED, "FILE", more=PATH)
     plot: Path | None = option(
-        None, "Draw the largest turn against the axis: SVG, PNG, PDF.", REPORTED, "FILE", more=PLACE
+        None, "Draw the largest turn against the axis: SVG, PNG, PDF.", REPORTED, "FILE", more=PATH
     )

@@ -31,7 +31,7 @@ NUMBERS = {kind.name: k for k, kind in enumerate(KINDS)}
 
 
 class CheckedFont(Protocol):
-    """A font, as the page calls it, and what was found in it: see :class:`.checks.job.Face`."""
+    """A font, as the page calls it, and what was found in it: see :class:`.checks.job.FaceFindings`."""
 
     font: str
     source: Any

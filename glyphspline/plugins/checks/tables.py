@@ -17,7 +17,7 @@ from ...types import counted, shortened
 from .finding import Finding, place_on_axes
 
 if TYPE_CHECKING:
-    from .job import Face
+    from .job import FaceFindings
 
 MARKDOWN_ROWS = 200
 """Findings in Markdown: GitHub takes 65,536 characters."""
@@ -34,7 +34,7 @@ NUMBERS = ("score", "contour", "segment", "point")
 LEVEL_OF: Mapping[str, Level] = {kind.name: kind.level for kind in KINDS}
 
 
-def columns(found: Sequence[tuple[Face, Finding]], several: bool) -> tuple[list[str], list[list[str]]]:
+def columns(found: Sequence[tuple[FaceFindings, Finding]], several: bool) -> tuple[list[str], list[list[str]]]:
     """Headings and rows of a table of findings, with the fonts' names if there are ``several``."""
     located = any(finding.location for _, finding in found)
     headings = ["font"] * several + ["glyph", "level", *NUMBERS, "finding"] + ["location"] * located
@@ -56,7 +56,7 @@ def counts_words(counts: Mapping[str, int], level: Level | None = None) -> str:
     )
 
 
-def sentences(faces: Sequence[Face], found: int, shown: int, level: Level) -> Iterator[str]:
+def sentences(faces: Sequence[FaceFindings], found: int, shown: int, level: Level) -> Iterator[str]:
     """What the table does not say: what is left out of it, and what could not be checked."""
     counts = sum((face.counts for face in faces), Counter())
     checked = counted(sum(face.glyphs for face in faces), "glyph")
@@ -79,13 +79,13 @@ def sentences(faces: Sequence[Face], found: int, shown: int, level: Level) -> It
     yield from (f"not read: {line}" for line in shortened(parts, 3, "of {} glyphs more"))
 
 
-def failures(faces: Sequence[Face]) -> tuple[list[str], list[str]]:
+def failures(faces: Sequence[FaceFindings]) -> tuple[list[str], list[str]]:
     """Glyphs that could not be checked, and fonts, with the reasons."""
     failed = [f"{face.font}: {glyph}: {error}" for face in faces for glyph, error in face.failed]
     return failed, [face.error for face in faces if face.error is not None]
 
 
-def as_json(faces: Sequence[Face], thresholds: Thresholds) -> str:
+def as_json(faces: Sequence[FaceFindings], thresholds: Thresholds) -> str:
     """All faces as JSON: each with its findings, kinks along its axes in numbers, and glyphs that failed."""
     fonts = [
         {
@@ -108,7 +108,7 @@ def as_json(faces: Sequence[Face], thresholds: Thresholds) -> str:
     return json.dumps({"thresholds": asdict(thresholds), "fonts": fonts}, indent=1, ensure_ascii=False)
 
 
-def as_csv(found: Sequence[tuple[Face, Finding]]) -> str:
+def as_csv(found: Sequence[tuple[FaceFindings, Finding]]) -> str:
     """A line for each finding, below a header. Text that a spreadsheet would compute is kept from it."""
     text = StringIO()
     writer = csv.writer(text)  # lines end with \r\n, as RFC 4180 has them
@@ -131,7 +131,7 @@ def _inert(text: str) -> str:
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 
 
-def as_markdown(faces: Sequence[Face], found: Sequence[tuple[Face, Finding]], level: Level) -> str:
+def as_markdown(faces: Sequence[FaceFindings], found: Sequence[tuple[FaceFindings, Finding]], level: Level) -> str:
     """A heading with counts and a table of the worst findings, as GitHub shows it in a comment or a summary."""
     counts = sum((face.counts for face in faces), Counter())
     lines = [

@@ -39,7 +39,7 @@ def diff(
     rows: Annotated[
         int, About("Print this number of lines of the table.", "What is reported", "N", more=opt.NATURAL)
     ] = 20,
-    html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PLACE)] = None,
+    html: Annotated[Path | None, About("Draw both over each other, on a page.", None, "FILE", more=opt.PATH)] = None,
 ) -> bool:
     """Compare two fonts glyph by glyph: a certified distance of the outlines, advances, contours and kinks.
 

@@ -25,7 +25,7 @@ class Pair(NamedTuple):
     new: Head
 
 
-class Unread(NamedTuple):
+class Uncompared(NamedTuple):
     """A glyph that could not be compared: its name in the old font, and why."""
 
     glyph: str
@@ -33,7 +33,7 @@ class Unread(NamedTuple):
     error: str
 
 
-Found: TypeAlias = list[Difference | Unread]
+Found: TypeAlias = list[Difference | Uncompared]
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class CompareJob(Job[Pair, Found]):
 
     def failed(self, task: Pair, error: Exception) -> Found:
         """Why a glyph was not compared."""
-        return [Unread(*task.old[:2], reason(error))]
+        return [Uncompared(*task.old[:2], reason(error))]
 
 
 def _item(old: OutlineOrError, new: OutlineOrError) -> Item | GlyphsplineError:
@@ -110,7 +110,7 @@ class FontDifference:
     glyphs: Pairs
     identical: int = 0
     differences: list[Difference] = field(default_factory=list)
-    unread: list[Unread] = field(default_factory=list)
+    unread: list[Uncompared] = field(default_factory=list)
     fonts: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -234,7 +234,7 @@ def compare_fonts(
     with workers(jobs if total else 0, LIMITS.seconds, ["comparing"], total, executor=executor) as pool:
         for part in run(job, glyphs.pairs, pool, ordered=True, observer=observer):
             for each in part.result:
-                if isinstance(each, Unread):
+                if isinstance(each, Uncompared):
                     found.unread.append(each)
                 elif each.is_none:
                     found.identical += 1

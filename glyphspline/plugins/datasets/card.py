@@ -37,7 +37,7 @@ class OfSplit:
 
 
 @dataclass
-class Summary:
+class DatasetSummary:
     """Counts of a data set.
 
     Attributes:
@@ -57,7 +57,7 @@ class Summary:
     seconds: float = 0.0
 
     @classmethod
-    def of(cls, plan: Plan, totals: Mapping[int, OfFont], sizes: Mapping[Shard, int]) -> Summary:
+    def of(cls, plan: Plan, totals: Mapping[int, OfFont], sizes: Mapping[Shard, int]) -> DatasetSummary:
         """The counts of a plan that was carried out, from those of each font and the sizes of shards."""
         found = cls()
         families: dict[str, set[str | None]] = {split: set() for split in SPLITS}
@@ -169,7 +169,7 @@ def command(spec: DatasetSpec) -> str:
     return f"glyphspline dataset FONTS… --out DIR {shlex.join([*chain(*found.values()), *fit])}".rstrip()
 
 
-def card(plan: Plan, summary: Summary, schema: Any) -> str:
+def card(plan: Plan, summary: DatasetSummary, schema: Any) -> str:
     """README.md."""
     spec, record = plan.spec, plan.record
     splits = {name: summary.splits[name] for name in SPLITS if name in summary.splits}
@@ -232,7 +232,7 @@ def _lines(*lines: str) -> str:
     return "".join([f"{line}\n" for line in lines])
 
 
-def _header(summary: Summary, splits: Iterable[str]) -> str:
+def _header(summary: DatasetSummary, splits: Iterable[str]) -> str:
     """Facts about the data set for Hugging Face's ``datasets``, as YAML."""
     hub = list(dict.fromkeys(name.lower() if name in HUB else "other" for name in sorted(summary.licences)))
     licence = [f"license: {hub[0]}"] if len(hub) == 1 else ["license:", *(f"- {name}" for name in hub)] if hub else []

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Annotated, Any
 
 from ...cli import arguments as opt
-from ...cli.groups import grouped, only, place
+from ...cli.groups import as_path, grouped, only
 from ...cli.messages import print_json, progress, say
 from ...fields import About
 from .spec import ROWS, DatasetSpec
@@ -14,7 +14,7 @@ from .spec import ROWS, DatasetSpec
 
 def place_or_url(text: Any) -> str:
     """Parse a path or URL, which stays as it is written."""
-    place(text)
+    as_path(text)
     return str(text)
 
 

@@ -22,7 +22,7 @@ LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "fonttools", "uharfbuzz")
 """Those whose versions decide the bytes of shards."""
 
 
-class Task(NamedTuple):
+class DatasetTask(NamedTuple):
     """A glyph: its font, and its place among the glyphs of the font that are asked for."""
 
     font: FontFacts
@@ -81,13 +81,13 @@ class Plan:
         """Number of glyphs of all shards."""
         return sum(shard.glyphs for shard in self.shards)
 
-    def chunks(self, shard: Shard) -> Iterator[Sequence[Task]]:
+    def chunks(self, shard: Shard) -> Iterator[Sequence[DatasetTask]]:
         """The tasks of a shard in order, in chunks of one font each."""
         # What points, tangents, curvature and pixels of a glyph with eight contours need in memory.
         need = 8 * 20 * (self.spec.points or 64) + (self.spec.raster or 0) ** 2
         size = max(1, min(self.sizes.chunk, self.sizes.chunk_bytes // need))
         for font, first, last in shard.pieces:
-            yield from slices([Task(self.fonts[font], k) for k in range(first, last)], size)
+            yield from slices([DatasetTask(self.fonts[font], k) for k in range(first, last)], size)
 
     @cached_property
     def record(self) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from ...errors import GlyphsplineError, OptionError
 from ...extras import need
 from ...fitting.convert import convert_many, unfitted
 from ...fitting.measures import check_coordinates
-from ...fitting.results import ConvertedContours, GlyphResult, as_glyphs, end_to_end
+from ...fitting.results import ConvertedContours, GlyphResult, as_glyphs, joined_results
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.outline import FontMetrics, Outline
 from ...outlines.sampling import CORNER_ANGLE
@@ -71,7 +71,7 @@ def table_of(outlines: Sequence[Outline], results: Sequence[GlyphResult | None] 
     glyphs = fitted or as_glyphs(canonical_outlines(outlines))
     if len(glyphs) != len(outlines):
         raise ValueError(f"{len(fitted)} results for {len(outlines)} outlines")
-    found, offsets = end_to_end(glyphs)
+    found, offsets = joined_results(glyphs)
     check_coordinates(found.source)
     ems = np.array([glyph.outline.metrics.units_per_em for glyph in glyphs], dtype=np.float64)
     scales = ems if spec.normalise == "em" else np.ones(len(glyphs))

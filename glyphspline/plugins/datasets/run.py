@@ -27,10 +27,10 @@ from ...runs.schedule import Place, sources, workers
 from ...runs.shapes import Shapes
 from ...runs.spec import LIMITS, differences, kinds_for
 from . import remote
-from .card import Summary, card, write_fonts
+from .card import DatasetSummary, card, write_fonts
 from .columns import schema
 from .kept import Chunks, Made, streamed
-from .plan import Plan, Shard, Task, plan_of, record_text
+from .plan import DatasetTask, Plan, Shard, plan_of, record_text
 from .scan import ScanJob, selected
 from .shards import OfFont, add_shapes, finished, write_shard
 from .spec import USUAL, DatasetSpec, Sizes
@@ -42,14 +42,14 @@ SHARD_NAME = re.compile(r"(?:train|validation|test)-\d{5,}-of-\d{5,}\.parquet")
 
 
 @dataclass(frozen=True)
-class RowsJob(Job[Task, Made]):
+class RowsJob(Job[DatasetTask, Made]):
     """Rows of glyphs; the tasks of a call are of one font."""
 
     spec: DatasetSpec
 
     budget = ConvertJob.budget
 
-    def read(self, tasks: Sequence[Task]) -> list[Item | Exception]:
+    def read(self, tasks: Sequence[DatasetTask]) -> list[Item | Exception]:
         """Outlines; one that is too large, or has more contours than any real one, is an error."""
         from ...runs.worker import items
 
@@ -67,7 +67,7 @@ class RowsJob(Job[Task, Made]):
                 found[k] = GlyphsplineError(words)
         return items(found, self.spec.options, LIMITS)
 
-    def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> Made:
+    def together(self, tasks: Sequence[DatasetTask], contents: Sequence[Any]) -> Made:
         """The rows of outlines."""
         from .rows import fits_of, table_of, with_font
 
@@ -82,7 +82,7 @@ class RowsJob(Job[Task, Made]):
         table = with_font(table_of(own, [one for _, one in good], self.spec), own, font, self.spec, asked)
         return Made(streamed(table), len(good), failed)
 
-    def failed(self, task: Task, error: Exception) -> Made:
+    def failed(self, task: DatasetTask, error: Exception) -> Made:
         """No rows. The name of the glyph is that of the font, if it can be opened here."""
         place = task.font.place
         try:
@@ -112,7 +112,7 @@ def dataset(
     restart: bool = False,
     observer: Observer | None = None,
     sizes: Sizes = USUAL,
-) -> Summary:
+) -> DatasetSummary:
     """Make a data set of the glyphs of fonts: a folder of Parquet files that ``datasets.load_dataset`` opens.
 
     The same fonts and options give the same bytes, whatever ``jobs`` is and however often the run was interrupted:
@@ -187,11 +187,7 @@ def _prepare(out: str, place: Path, plan: Plan, restart: bool) -> None:
 
 
 def _record(out: str) -> dict[str, Any] | None:
-    """The record of the data set in a folder; None if it has none.
-
-    Raises:
-        OutputError: a file of that name is no such record.
-    """
+    """The record of the data set in a folder; None if it has none, an OutputError if the file is something else."""
     path = f"{out}/{RECORD}"
     if remote.size(path) is None:
         return None
@@ -202,7 +198,7 @@ def _record(out: str) -> dict[str, Any] | None:
     return record
 
 
-def _written(out: str, plan: Plan, record: Record, pool: Executor, observer: Observer | None) -> Summary:
+def _written(out: str, plan: Plan, record: Record, pool: Executor, observer: Observer | None) -> DatasetSummary:
     """Write the shards that are not finished, then the table of fonts and the card."""
     paths = {shard: f"{out}/{shard.name}" for shard in plan.shards}
     held = {shard: finished(path, mark_of(shard, plan)) for shard, path in paths.items()}
@@ -251,7 +247,7 @@ def _written(out: str, plan: Plan, record: Record, pool: Executor, observer: Obs
     sizes = {shard: size for shard, path in paths.items() if (size := remote.size(path)) is not None}
     if gone := [path for shard, path in paths.items() if shard not in sizes]:
         raise OutputError("is gone while the data set is written", font=gone[0])
-    summary = Summary.of(plan, totals, sizes)
+    summary = DatasetSummary.of(plan, totals, sizes)
     remote.put(f"{out}/{FONTS}", lambda file: write_fonts(plan, totals, file))
     remote.put(f"{out}/{CARD}", lambda file: file.write(card(plan, summary, layout).encode()))
     return summary

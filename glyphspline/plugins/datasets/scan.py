@@ -94,7 +94,7 @@ class ScanJob(Job[Path, list[FontFacts]]):
     spec: DatasetSpec
 
     chunk = 1
-    settles = False
+    chooses = False
 
     def together(self, tasks: Sequence[Path], contents: Sequence[Any]) -> list[FontFacts]:
         """The facts of some files."""

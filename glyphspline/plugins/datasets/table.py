@@ -40,17 +40,22 @@ from typing import Any
 import numpy as np
 
 from ...extras import need
-from ...fitting.results import BOUNDS, ConvertedContours, GlyphResult, Measures, end_to_end
+from ...fitting.results import (
+    BOUNDS,
+    PER_EM,
+    QUANTITIES,
+    ConvertedContours,
+    GlyphResult,
+    Measures,
+    joined_results,
+)
 from ...outlines.contour_arrays import offsets_of
 from ...readers import Source
 from ...types import FloatArray, IntArray
 
 SCHEMA_VERSION = 2
 
-POWERS = {
-    "residual": 1, "deviation": 1, "deviation_bound": 1, "overshoot": 1, "length": 1, "area_change": 2,
-    "bending_energy": -1, "max_curvature": -1,
-}  # fmt: skip
+POWERS = {name: {"units": 1, "units²": 2, PER_EM: -1}[one.unit] for name, one in QUANTITIES.items() if one.unit}
 """Of the unit of length, in the measures that have one."""
 
 
@@ -123,7 +128,7 @@ def _groups(tables: Iterable[Any], waiting: Any, group: int) -> Iterator[Any]:
 def rows(font: tuple[str, str], glyphs: list[GlyphResult]) -> Any:
     """An Arrow table with a row for each contour of glyphs of a font with this family and style."""
     pa, layout = need("parquet"), schema()
-    found, offsets = end_to_end(glyphs)
+    found, offsets = joined_results(glyphs)
     units = np.ones(len(found))
     columns = fit_columns(found, units) | source_columns(found, units) | measure_columns(found, units)
     outlines = [glyph.outline for glyph in glyphs]
@@ -145,7 +150,7 @@ def rows(font: tuple[str, str], glyphs: list[GlyphResult]) -> Any:
 
 def types_of(columns: Callable[[ConvertedContours, FloatArray], dict[str, Any]]) -> dict[str, Any]:
     """Arrow types of the columns that one of the functions below makes."""
-    return {name: column.type for name, column in columns(end_to_end([])[0], np.empty(0)).items()}
+    return {name: column.type for name, column in columns(joined_results([])[0], np.empty(0)).items()}
 
 
 def measure_types() -> dict[str, Any]:

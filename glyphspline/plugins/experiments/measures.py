@@ -15,7 +15,7 @@ from ...fitting.results import PER_EM, Quantity
 from ...outlines.contour_arrays import cubic_contours
 from ...report.data import plain
 from ...types import FloatArray
-from .methods import Curve
+from .methods import MethodCurve
 
 PER_PIECE = 16
 """Points of a piece for distances."""
@@ -47,7 +47,9 @@ QUANTITIES = {
 """What a row has of a curve."""
 
 
-def rows_of(polygons: Sequence[FloatArray], curves: Sequence[Mapping[str, Curve]], em: float) -> list[dict[str, Any]]:
+def rows_of(
+    polygons: Sequence[FloatArray], curves: Sequence[Mapping[str, MethodCurve]], em: float
+) -> list[dict[str, Any]]:
     """A row for each contour and method; null is not computed, or not finite.
 
     Args:
@@ -68,7 +70,7 @@ def is_tame(pieces: FloatArray, em: float) -> bool:
     return bool(np.abs(pieces).max() < WILD * em)
 
 
-def _steps(curve: Curve, em: float) -> dict[str, Any]:
+def _steps(curve: MethodCurve, em: float) -> dict[str, Any]:
     """What there is to say of an iteration."""
     if curve.residuals is None:
         return {}
@@ -79,7 +81,7 @@ def _steps(curve: Curve, em: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _shapes(measured: Sequence[tuple[Curve, FloatArray]], em: float) -> list[dict[str, Any]]:
+def _shapes(measured: Sequence[tuple[MethodCurve, FloatArray]], em: float) -> list[dict[str, Any]]:
     """Measures of curves, each beside its polygon."""
     if not measured:
         return []
@@ -136,7 +138,7 @@ def curvature_variation(cubics: FloatArray) -> float:
     return float((own * np.tile(WEIGHTS, PARTS)).sum() / (2 * PARTS))
 
 
-def farthest_apart(curves: Sequence[Mapping[str, Curve]], methods: Sequence[str]) -> tuple[float, FloatArray]:
+def farthest_apart(curves: Sequence[Mapping[str, MethodCurve]], methods: Sequence[str]) -> tuple[float, FloatArray]:
     """The largest distance of a span of one method's curve from that of another, and where; by points of the spans."""
     most, where = -1.0, np.zeros(2)
     for own in curves:

@@ -26,7 +26,7 @@ TAIL = 30
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class MethodCurve:
     """A closed curve through the n vertices of a polygon.
 
     Attributes:
@@ -60,7 +60,7 @@ class Interpolated:
 
     outline: Outline
     polygons: tuple[FloatArray, ...]
-    curves: tuple[Mapping[str, Curve], ...]
+    curves: tuple[Mapping[str, MethodCurve], ...]
     tolerance: float
 
     @property
@@ -69,7 +69,7 @@ class Interpolated:
         return self.outline.metrics.units_per_em
 
 
-def curve_through(polygon: FloatArray, method: str, tolerance: float, radii: bool = False) -> Curve:
+def curve_through(polygon: FloatArray, method: str, tolerance: float, radii: bool = False) -> MethodCurve:
     """The curve of a method, one of ``VARIANTS`` or ``PEERS``.
 
     Args:
@@ -82,7 +82,7 @@ def curve_through(polygon: FloatArray, method: str, tolerance: float, radii: boo
         v = VARIANTS.index(method)
         found = interpolate(polygon, v, residual_tolerance=tolerance, max_iterations=CUT if v == 0 else MAX_ITERATIONS)
         seconds = time.perf_counter() - started
-        return Curve(
+        return MethodCurve(
             found.spline.to_bezier(), places_of(found.spline, found.parameters), seconds, found.residuals,
             found.converged, found.rate_bound, found.fallbacks,
             composite_radii(polygon, v, tolerance) if radii else None,
@@ -90,12 +90,12 @@ def curve_through(polygon: FloatArray, method: str, tolerance: float, radii: boo
     if method == "PIA":
         spline, residuals = iterated(polygon, tolerance)
         seconds = time.perf_counter() - started
-        return Curve(spline.to_bezier(), places, seconds, residuals, bool(residuals[-1] < tolerance))
+        return MethodCurve(spline.to_bezier(), places, seconds, residuals, bool(residuals[-1] < tolerance))
     if method == "splprep":
         pieces = splprep_pieces(polygon)
     else:
         pieces = scipy_pieces(polygon, "centripetal" if method == "centripetal" else "chord")
-    return Curve(pieces, places, time.perf_counter() - started)
+    return MethodCurve(pieces, places, time.perf_counter() - started)
 
 
 def places_of(spline: Spline, t: FloatArray) -> FloatArray:

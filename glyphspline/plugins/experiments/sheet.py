@@ -53,7 +53,7 @@ TINT = "#eef1f4"
 
 
 @dataclass
-class Rows:
+class PanelRows:
     """Rows of panels of a figure, which is filled from the top; lengths are in inches."""
 
     figure: Any
@@ -100,7 +100,7 @@ def _sheet(made: Interpolated, face: str) -> Any:
     height = 2 * EDGE + top * min(ratio, 1.1) + each * (2 * ratio + 0.75) + 2 * LABEL + 2 * GAP + LINE * len(caption)
     height += (each * 0.8 + GAP) * has_radii
     figure = blank(width, height)
-    rows, names = Rows(figure, width, height - EDGE), map("({})".format, "abcdefghij")
+    rows, names = PanelRows(figure, width, height - EDGE), map("({})".format, "abcdefghij")
     original, polygon, residuals = rows.add(3, 3, min(ratio, 1.1), LABEL)
     fill(original, [contour.cubics() for contour in made.outline.contours], INK, INK)
     for p in made.polygons:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..._version import __version__
 from ...errors import GlyphsplineError, OptionError
-from ...fields import METHOD, WRITTEN, Rule, option, positive, whole
+from ...fields import METHOD, WRITTEN, Condition, option, positive, whole
 from ...files import reading
 from ...outlines.sampling import MOST_VERTICES
 from ...runs.spec import RunSpec, command, font_facts
@@ -45,7 +45,9 @@ class ExperimentSpec(RunSpec):
     formats: tuple[str, ...] = option(SHEETS, "Draw sheets in these formats.", WRITTEN, "NAME,…", flags="--format")
     variants: str = option(
         "1,2,3", "Put these variants of the paper through the polygons: 1,2,3 or 0-4.", METHOD, "LIST",
-        rule=Rule("a list of 0 to 4, as 1,2,3 or 0-4", lambda text: bool(LISTED.fullmatch(text) and variants_of(text))),
+        rule=Condition(
+            "a list of 0 to 4, as 1,2,3 or 0-4", lambda text: bool(LISTED.fullmatch(text) and variants_of(text))
+        ),
     )  # fmt: skip
     count: int | None = option(
         None,

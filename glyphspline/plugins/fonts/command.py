@@ -36,7 +36,7 @@ def refit(
     instance: opt.Instance,
     run: opt.RunOptions,
     *,
-    out: Annotated[Path | None, opt.out("Write to this folder.", "DIR", **opt.PLACE)] = None,
+    out: Annotated[Path | None, opt.out("Write to this folder.", "DIR", **opt.PATH)] = None,
     axis: Annotated[
         str | None,
         About("Make masters of single fonts, on this axis: wght=300:700, a value for each.", WRITTEN, "TAG=A:B"),

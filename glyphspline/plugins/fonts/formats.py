@@ -96,7 +96,7 @@ class Ttf(FontFormat):
     name = "ttf"
 
 
-class Ufo(ResultsFormat):
+class UfoFormat(ResultsFormat):
     """A UFO with new outlines: a copy of one, or made of a font."""
 
     name, verb = "ufo", "refit"
@@ -128,17 +128,17 @@ class Ufo(ResultsFormat):
         return as_read(copy or source.path, promises, layer, remarks)
 
 
-class Back(Ufo):
+class Back(UfoFormat):
     """The source itself."""
 
     name, always = "source", True
 
     def check(self, source: Source) -> None:
         """Refuse what takes no outlines back, or not so."""
-        from ...readers.ufo import Ufo as OpenedUfo
+        from ...readers.ufo import Ufo
         from .back.back import editable
 
-        if not isinstance(editable(source), OpenedUfo):
+        if not isinstance(editable(source), Ufo):
             raise OutputError(
                 "the outlines of a designspace go back in all masters: add --masters", font=str(source.path)
             )
@@ -152,7 +152,7 @@ class Back(Ufo):
         return self.put_back(source, glyphs, spec, None)
 
 
-OTF, TTF, UFO, BACK = Otf(), Ttf(), Ufo(), Back()
+OTF, TTF, UFO, BACK = Otf(), Ttf(), UfoFormat(), Back()
 
 
 def back_to_source(source: Source, new: Any, spec: Any, copy: Path | None = None) -> list[str]:
@@ -165,7 +165,7 @@ def back_to_source(source: Source, new: Any, spec: Any, copy: Path | None = None
         OutputError: a file cannot be written.
     """
     from ...files import writing
-    from ...readers.ufo import Ufo as OpenedUfo
+    from ...readers.ufo import Ufo
     from .back.back import write_back
 
     own: Any = source
@@ -174,7 +174,7 @@ def back_to_source(source: Source, new: Any, spec: Any, copy: Path | None = None
         found = write_back(own, new, spec.options.for_em(source.metrics.units_per_em).precision, copy=copy, layer=layer)
     where = copy.name if copy else f"layer {layer} of {source.path.name}" if layer else source.path.name
     curves = "G2, as fonts store them" if spec.options.is_for_fonts else "C2 (--continuity g2: fewer points)"
-    curves += "" if isinstance(source, OpenedUfo) else ", in all masters"
+    curves += "" if isinstance(source, Ufo) else ", in all masters"
     curves += ": points {:,} → {:,}".format(*found.points) * any(found.points)
     remarks = [f"{where}: new outlines of {counted(len(found.names), 'glyph')}, {curves}; nothing else changed"]
     kept = [f"{name}: {why}, and stays as it was" for name, why in found.kept.items()]
@@ -191,9 +191,9 @@ def promised(glyphs: Iterator[GlyphResult], spec: Any, promises: dict[str, Promi
 
 def as_read(path: Path, promises: Mapping[str, Promise], layer: str | None, remarks: list[str]) -> Written:
     """What a written UFO holds of what was promised; with a layer, in that one where it has the glyph."""
-    from ...readers.ufo import Ufo as OpenedUfo
+    from ...readers.ufo import Ufo
 
-    written: Any = OpenedUfo.opened(path)
+    written: Any = Ufo.opened(path)
     if layer:
         with suppress(FontError):  # none is made if nothing changes
             written.default_layer = ChainMap(written.layer(layer), written.default_layer)

@@ -25,8 +25,7 @@ from ...writers.figures.basics import (
 from ...writers.settings import FigureKind
 from ...writers.svg.comb import LONGEST, SOURCE, TOOTH, Teeth, teeth
 from .convert_masters import MastersResult
-from .kinks import AlongAxis, AxisKinks, Kink, KinkReport, along_axis, joint_turns, places_along
-from .kinks import Source as VariableSource
+from .kinks import AlongAxis, AxisKinks, Kink, KinkReport, VariableSource, along_axis, joint_turns, places_along
 
 PAGE = (11.69, 8.27)
 """A4 in inches, broad side down."""

@@ -214,11 +214,11 @@ class _Fits(NamedTuple):
         Contours that cross or collapse at a corner where their source does not are fitted more closely, as those of
         single outlines are.
         """
-        from ...fitting.faithful import Trial, tries
+        from ...fitting.faithful import GlyphTrial, tries
         from ...fitting.first_good import first_good
 
-        def judged(results: Sequence[MastersContourResult]) -> Trial[MastersContourResult]:
-            return Trial(results, changes_at(self.mixes, results))
+        def judged(results: Sequence[MastersContourResult]) -> GlyphTrial[MastersContourResult]:
+            return GlyphTrial(results, changes_at(self.mixes, results))
 
         first = judged(self.fitted(range(len(self.numbers)), SHARP_TRIES[0]))
         closer = [partial(self.fitted, share=share) for share in SHARP_TRIES[1:]]

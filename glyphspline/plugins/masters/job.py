@@ -39,7 +39,7 @@ from ...runs.folder import (
     entries_of,
     progress_of,
 )
-from ...runs.result_text import stored
+from ...runs.result_text import read_result
 from ...runs.schedule import Place, place_of, sources
 from ...runs.spec import RESULTS, RunSpec, describe, write_run
 from ...runs.summary import NAMED, MastersSummary
@@ -87,7 +87,7 @@ class MastersJob(Output, Job[Task, list[Done]]):
 
     def together(self, tasks: Sequence[Task], contents: Sequence[Any]) -> list[Done]:
         """Convert one glyph, store its result and write its drawings: those of the default master."""
-        from ...runs.worker import Glyph, write_files
+        from ...runs.worker import DrawnGlyph, write_files
 
         (task,) = tasks
         masters = self._masters(task)
@@ -109,7 +109,7 @@ class MastersJob(Output, Job[Task, list[Done]]):
             "stored": None, "kept": None, "error": None,
         }  # fmt: skip
         axes = along_axes(result) if GALLERY in self.spec.formats else None
-        drawn = Glyph(glyph, path, source, PolygonData(nothing, nothing), contours, result, axes)
+        drawn = DrawnGlyph(glyph, path, source, PolygonData(nothing, nothing), contours, result, axes)
         return [write_files(self, task, drawn, facts, _encoded)]
 
     def failed(self, task: Task, error: Exception) -> list[Done]:
@@ -271,7 +271,7 @@ def _results(out: Path, progress: Progress, with_empty: bool) -> Mapping[str, Re
         path = entry["files"].get(RESULTS)  # None in a run of drawings alone
         if path and (entry["status"] == "ok" or (with_empty and entry["status"] == "empty")):
             files[entry["glyph"]] = path
-    return MadeOnDemand(files, lambda name: redrawn_glyph(stored(out / files[name], MastersResult, STORED)))
+    return MadeOnDemand(files, lambda name: redrawn_glyph(read_result(out / files[name], MastersResult, STORED)))
 
 
 def default_glyph(result: MastersResult) -> GlyphResult:

@@ -27,7 +27,7 @@ from ...types import BoolArray, FloatArray, IntArray, counted
 from ..checks.finding import Measured
 
 
-class Source(Protocol):
+class VariableSource(Protocol):
     """What kinks are measured of: :class:`glyphspline.Font`, or any other source of a variable font."""
 
     path: Path
@@ -251,8 +251,9 @@ class KinkReport(Sequence[AxisKinks]):
 
 
 def kinks(
-    source: Source, glyphs: Iterable[str] | None = None, axis: str | None = None, *, corner_angle: float = CORNER_ANGLE
-) -> KinkReport:
+    source: VariableSource, glyphs: Iterable[str] | None = None, axis: str | None = None, *,
+    corner_angle: float = CORNER_ANGLE,
+) -> KinkReport:  # fmt: skip
     """Measure how far smooth joints turn along the axes of a variable font. Nothing is fitted.
 
     A joint of two segments is smooth if it turns by less than ``corner_angle`` in every master of its glyph. Every axis

@@ -16,7 +16,7 @@ from ...readers.pens import ContourPen
 from ...types import FloatArray
 from ..fonts.tables.font_glyphs import enlarged, simple_glyph
 from ..fonts.tables.master_deltas import axes_of, check_steps, numbers_of, region_key, rounded_deltas
-from ..fonts.tables.variable_glyf import PHANTOMS, Gvar, Record, placed_by_points, put_glyphs
+from ..fonts.tables.variable_glyf import PHANTOMS, GlyphRecord, Gvar, placed_by_points, put_glyphs
 from .quadratic_contours import Own, in_quadratics, stored_points
 from .redrawn import Redrawn, StoredGlyph, displaced
 from .stretches import NEAR, NOTHING_NEW
@@ -45,7 +45,7 @@ class Quadratics:
         masters = redrawn.masters
         if name in self._counted:
             raise GlyphsplineError(f"{self._counted[name]} is composed by the numbers of its points", glyph=name)
-        record = Record.of(self._font, name, masters, self._gvar)
+        record = GlyphRecord.of(self._font, name, masters, self._gvar)
         known, given, shift = numbers_of(masters), record.given, record.lefts
         keys = [region_key(self._gvar.region(variation)) for variation in given]
         for key, variation in zip(keys, given, strict=True):
@@ -101,14 +101,14 @@ class Quadratics:
         off = displaced(self._read(name, record), replace(masters, contours=redrawn.contours))
         return StoredGlyph(redrawn.inner, far + off, *((bound + off, redrawn.tally) if compared else (None, None)))
 
-    def _read(self, name: str, before: Record) -> Masters:
+    def _read(self, name: str, before: GlyphRecord) -> Masters:
         """A glyph that was replaced, as its new records have it."""
         glyph, phantoms = self._new[name], before.coordinates[-PHANTOMS:]
         if not glyph.numberOfContours:
             return replace(before.masters, contours=(), repeats=None)
         coordinates, flags = [*glyph.coordinates, *phantoms], np.frombuffer(bytes(glyph.flags), dtype=np.uint8)
         given = self._gvar.stored(self._font.getGlyphID(name), len(coordinates))
-        record = Record(before.masters, coordinates, glyph.endPtsOfContours, flags, given, self._gvar)
+        record = GlyphRecord(before.masters, coordinates, glyph.endPtsOfContours, flags, given, self._gvar)
         points, pen = record.outline(record.drawn), ContourPen(masters=len(before.masters))
         for a, b in record.spans:
             pen.contour(*quadratics(points[:, a:b], record.on[a:b])[:2])
@@ -116,7 +116,7 @@ class Quadratics:
 
     def own(self, name: str, masters: Masters) -> tuple[dict[int, Own], FloatArray]:
         """The contours that a glyph has, as in :func:`own_contours`, and the (K,) shift of :func:`in_quadratics`."""
-        record = Record.of(self._font, name, masters, self._gvar)
+        record = GlyphRecord.of(self._font, name, masters, self._gvar)
         return own_contours(record), record.lefts
 
     def finish(self) -> None:
@@ -125,7 +125,7 @@ class Quadratics:
         self._gvar.store(self._font)
 
 
-def own_contours(record: Record) -> dict[int, Own]:
+def own_contours(record: GlyphRecord) -> dict[int, Own]:
     """The contours of a glyph, by their numbers in the masters; none that these do not have so."""
     masters, every, points = record.masters, record.on, record.outline(record.drawn)
     steps = rounded_deltas(masters, record.drawn[:, :-PHANTOMS], 1)

@@ -14,7 +14,7 @@ from ...outlines.outline import Contour
 from ...readers.pens import ContourPen
 from ...readers.ufo import EditableSource
 from ...types import BoolArray, IntArray, counted
-from ..fonts.back.back import New
+from ..fonts.back.back import NewGlyph
 from ..fonts.tables.font_glyphs import Flavour
 
 
@@ -116,10 +116,10 @@ def oriented(new: Redrawn, flavour: Flavour) -> Redrawn:
     return replace(new, masters=masters, contours=tuple(c.reversed() for c in new.contours), inner=inner)
 
 
-def of_masters(source: EditableSource, redrawn: Mapping[str, Redrawn]) -> Iterable[New]:
+def of_masters(source: EditableSource, redrawn: Mapping[str, Redrawn]) -> Iterable[NewGlyph]:
     """The new contours of a source's glyphs in the masters in which they are drawn."""
     for name, new in redrawn.items():
         places = new.masters.stored_peaks
         drawings = [each for each in source.drawings(name) if each.place in places]
         chosen = [places.index(each.place) for each in drawings]
-        yield New(name, [[Contour(c.points[k], c.degrees) for k in chosen] for c in new.contours], drawings)
+        yield NewGlyph(name, [[Contour(c.points[k], c.degrees) for k in chosen] for c in new.contours], drawings)

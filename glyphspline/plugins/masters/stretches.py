@@ -168,7 +168,7 @@ def is_own(contour: MasterContour, span: IntArray, source: MasterContour, own: r
     return bool(lines.all() and apart <= NEAR)
 
 
-class Segments:
+class StretchPlan:
     """A contour of lines and cubics, any of whose stretches can be the source's own segments.
 
     Where it is not known which of these a stretch replaces, the whole contour is one.
@@ -225,7 +225,7 @@ class Segments:
         return moved
 
 
-def fewest(plans: Sequence[Segments]) -> None:
+def fewest(plans: Sequence[StretchPlan]) -> None:
     """Leave stretches as the font has them, those that need most more segments first, until a glyph has no more."""
     while sum(len(plan.stored()) - len(plan.source) for plan in plans) > 0:
         every = [

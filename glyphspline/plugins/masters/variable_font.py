@@ -31,7 +31,7 @@ from ..fonts.tables.font_glyphs import LIMIT, Flavour, drop_endless, parts_of, p
 from ..fonts.tables.master_deltas import PARTS, blend, check_steps, order_of, regions_of, rounded_deltas
 from .quadratic_glyphs import Quadratics
 from .redrawn import Redrawn, StoredGlyph, displaced
-from .stretches import NOTHING_NEW, Segments, fewest, settle, tally
+from .stretches import NOTHING_NEW, StretchPlan, fewest, settle, tally
 from .variations import Variations, executed
 
 LONGEST = 65535
@@ -185,7 +185,7 @@ class CharStrings2:
         old = self._strings[name]
         contours, inner, tallied = redrawn.contours, redrawn.inner, None
         if redrawn.bounds:
-            plans = [Segments(redrawn, c) for c in range(len(contours))]
+            plans = [StretchPlan(redrawn, c) for c in range(len(contours))]
             if redrawn.fewest:
                 fewest(plans)
             turning = settle(masters, lambda: [plan.stored() for plan in plans], lambda c, own: plans[c].retreat(own))

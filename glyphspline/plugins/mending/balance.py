@@ -18,7 +18,7 @@ import numpy as np
 from ...curves.bezier import cross
 from ...types import BoolArray, ComplexArray, FloatArray, IntArray
 from .grid import LEAST, Rounding, settle
-from .joints import EXACT, Layout
+from .joints import EXACT, ContourLayout
 from .state import Design
 
 SAMPLES = np.linspace(0.0, 1.0, 9)[1:-1]
@@ -152,7 +152,7 @@ def _complex(points: FloatArray) -> ComplexArray:
     return np.ascontiguousarray(points).view(np.complex128)[..., 0]
 
 
-class Stretch:
+class FreePoints:
     """Some points of a contour that may move in all masters, and the joints that must stay or become smooth.
 
     Attributes:
@@ -162,7 +162,7 @@ class Stretch:
             corners that slip along their curves apart, between them, as :mod:`.slip` has it.
     """
 
-    def __init__(self, layout: Layout, free: Sequence[int], design: Design) -> None:
+    def __init__(self, layout: ContourLayout, free: Sequence[int], design: Design) -> None:
         self.layout, self.free, self.design = layout, np.array(sorted(set(free))), design
         count = layout.points.shape[1]
         self.spread = np.zeros((count, len(self.free)))

@@ -58,7 +58,7 @@ def mend(
     report: Annotated[ReportOptions, only("rows", "html")],
     run: Annotated[opt.RunOptions, only("as_json", "jobs", "quiet")],
     options: MendOptions,
-    out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PLACE)] = None,
+    out: Annotated[Path | None, opt.out("Write copies of the sources to this folder.", "DIR", **opt.PATH)] = None,
     dry_run: Annotated[bool, About("Write nothing; only show what would move.", WRITTEN)] = False,
 ) -> bool:
     """Mend what check finds in sources: points move as little as it takes, in all masters.
@@ -70,7 +70,7 @@ def mend(
     from ...readers import Font, open_source
     from ...readers.ufo import EditableSource
     from ...runs.schedule import workers
-    from .job import Asked, mend_source
+    from .job import Scope, mend_source
 
     if (out is not None) + spec.is_back + dry_run != 1:
         stop("give one of --in-place, --layer, --out and --dry-run")
@@ -79,7 +79,7 @@ def mend(
     if report.html is not None and len(sources) > 1:
         raise OptionError("--html draws one source")
     kinds = MENDED if options.kinds == "all" else opt.items_of(options.kinds)
-    asked = Asked(kinds, options.tolerance, thresholds_of(options.thresholds, None))
+    asked = Scope(kinds, options.tolerance, thresholds_of(options.thresholds, None))
     found: list[MendedSource] = []
     undone = False
     with workers(run.processes, kinds=["mending"], expected=1, count=len(sources)) as pool:

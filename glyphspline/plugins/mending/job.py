@@ -20,8 +20,8 @@ from ...runs.spec import LIMITS
 from ...types import Head
 from .fewer import EDITED
 from .mend import check_kinds, mended
-from .state import Change, Into, State
-from .users import New, spoiling, write
+from .state import Change, Into, Tally
+from .users import MendedGlyph, spoiling, write
 
 OF_COMPONENT = "is of a component"
 """Why contours are left that another glyph draws; there they are mended."""
@@ -31,7 +31,7 @@ FONT_KEEPS = "needs points to go or to change their order, and hints and variati
 """Why such findings are left in fonts."""
 
 
-class Asked(NamedTuple):
+class Scope(NamedTuple):
     """Which kinds of findings are mended, by how much outlines may move, and what counts as a finding."""
 
     kinds: Sequence[str] = MENDED_UNASKED
@@ -53,7 +53,7 @@ class MendJob(Job[Head, list[Mended]]):
     """Glyphs mended as their source draws them; ``outer``: see :attr:`.Source.outer`."""
 
     place: Place
-    asked: Asked
+    asked: Scope
     outer: int
 
     chunk = 8
@@ -70,7 +70,7 @@ class MendJob(Job[Head, list[Mended]]):
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
         """Mend glyphs."""
         (kinds, tolerance, thresholds), found = self.asked, []
-        states = State.of_many([masters for masters, _ in contents], thresholds, self.outer)
+        states = Tally.of_many([masters for masters, _ in contents], thresholds, self.outer)
         for (masters, into), state in zip(contents, states, strict=True):
             new, changes = mended(masters, state, kinds, tolerance, thresholds, self.outer, into)
             moved = None if new is masters else new
@@ -140,7 +140,7 @@ class MendedSource:
 def mend_source(
     source: EditableSource | Font,
     names: Sequence[str],
-    asked: Asked,
+    asked: Scope,
     *,
     copy: Path | None = None,
     layer: str | None = None,
@@ -170,7 +170,7 @@ def mend_source(
 
         editable(source)
     job = MendJob(place_of(source), asked, source.outer)
-    found, new = MendedSource(str(source.path)), list[New]()
+    found, new = MendedSource(str(source.path)), list[MendedGlyph]()
     with workers(0, executor=executor) as pool:
         for part in run(job, list(heads_of(source, names).values()), pool, ordered=True, observer=observer):
             for (name, _, _), one in zip(part.tasks, part.result, strict=True):
@@ -180,7 +180,7 @@ def mend_source(
                 found.changes += one.changes
                 if one.old is not None and one.new is not None:
                     redrawn = {each.contour for each in one.changes if each.is_mended and each.kind in EDITED}
-                    new.append(New(one.old, one.new, redrawn))
+                    new.append(MendedGlyph(one.old, one.new, redrawn))
         with writing(copy or source.path):
             stay = spoiling(source, new, asked.tolerance, asked.thresholds, pool)
     new = [each for each in new if each.now.name not in stay]

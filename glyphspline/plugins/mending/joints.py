@@ -32,7 +32,7 @@ def starts_of(contour: MasterContour) -> IntArray:
     return starts
 
 
-class Layout:
+class ContourLayout:
     """A contour in K masters, of N points and m segments.
 
     Attributes:

@@ -20,12 +20,12 @@ from ...outlines.flaws.kinds import KINDS
 from ...outlines.flaws.turns import joint_controls, turns_of
 from ...outlines.masters import MasterContour, Masters
 from ...types import FloatArray
-from .balance import Bounds, Stretch, curvatures_at, jumps_at, turns_at
+from .balance import Bounds, FreePoints, curvatures_at, jumps_at, turns_at
 from .ink import INK, keeps_ink
-from .joints import EXACT, Layout
+from .joints import EXACT, ContourLayout
 from .shapes import Proposal, with_moves, with_result
 from .single import single_handles
-from .state import Change, Design, State, distances
+from .state import Change, Design, Tally, distances
 
 BETTER = 0.7
 """Share of its turn that a mended joint may keep, where handles are so short that the grid is coarse."""
@@ -139,10 +139,10 @@ class Group:
 
 
 def settled(
-    first: Masters, now: Masters, before: State, changes: Mapping[Place, Change], kind: str, design: Design,
-    check: Callable[[Masters], tuple[Masters, State]], fixed: Mapping[int, str],
+    first: Masters, now: Masters, before: Tally, changes: Mapping[Place, Change], kind: str, design: Design,
+    check: Callable[[Masters], tuple[Masters, Tally]], fixed: Mapping[int, str],
     ways: Callable[[Group, MasterContour, MasterContour, Design], Iterator[Proposal]],
-) -> tuple[Masters, State, list[Change]]:  # fmt: skip
+) -> tuple[Masters, Tally, list[Change]]:  # fmt: skip
     """The glyph without findings of a kind, as far as that can be; what is found in it then; and what became of each.
 
     Args:
@@ -151,7 +151,7 @@ def settled(
         check: says what the file makes of a glyph, and what is found in it. fixed: contours that may not change.
         ways: gives the proposals of a group, for its contour as it was first and as it is.
     """
-    layouts = {c: Layout(now.contours[c]) for c, _ in changes}
+    layouts = {c: ContourLayout(now.contours[c]) for c, _ in changes}
     left = dict(changes)
     for c, s in changes:
         obstacle = layouts[c].obstacle(s, kind, design.em) if kind in SMOOTHED else None
@@ -190,7 +190,7 @@ def settled(
     return now, before, [*left.values()]
 
 
-def turns_allowed(layout: Layout, joint: int, turn: float, exact: bool, design: Design) -> FloatArray:
+def turns_allowed(layout: ContourLayout, joint: int, turn: float, exact: bool, design: Design) -> FloatArray:
     """(L,) radians by which a joint may turn at the places, so that a check finds no kink; it turned by ``turn``.
 
     Where handles or segments are short this is more than the threshold, see :func:`.joints.joint_findings`; but not
@@ -239,7 +239,7 @@ def proposals(group: Group, first: MasterContour, contour: MasterContour, design
     Args:
         first: the contour as it was. contour: as it is now.
     """  # fmt: skip
-    layout = Layout(contour)
+    layout = ContourLayout(contour)
     seen = set[bytes]()
     if len(layout.points) == 1:
         turned = single_handles(layout, group.joints, group.kind, design)
@@ -260,8 +260,8 @@ def _least(
 
     If all ways are tried and there are none, the group knows what it needs.
     """
-    layout = Layout(MasterContour(points, contour.degrees))
-    stretches, bounded = dict[tuple[int, ...], Stretch](), dict[tuple[object, ...], Bounds | None]()
+    layout = ContourLayout(MasterContour(points, contour.degrees))
+    stretches, bounded = dict[tuple[int, ...], FreePoints](), dict[tuple[object, ...], Bounds | None]()
     for exact, own in groupby(ways, key=lambda way: way.exact):
         later = []
         for way in own:
@@ -269,7 +269,7 @@ def _least(
             if not free:
                 continue
             if free not in stretches:
-                stretches[free] = Stretch(layout, free, design)
+                stretches[free] = FreePoints(layout, free, design)
             stretch, what = stretches[free], (free, exact, way.meets)
             if what not in bounded:
                 bounded[what] = bounds_of(stretch, group, way, design)
@@ -301,7 +301,7 @@ def _least(
     if ways is WAYS and group.needs is None and group.why in (*WEAK, BEYOND) and stretches:
         way = WAYS[-1]._replace(meets=group.kind == "jump")
         anything = design._replace(tolerance=np.inf)
-        stretch = Stretch(layout, [*stretches.values()][-1].free.tolist(), anything)
+        stretch = FreePoints(layout, [*stretches.values()][-1].free.tolist(), anything)
         bounds = bounds_of(stretch, group, way, design)
         for moved in _on_grid(stretch, bounds, stretch.least(bounds, np.inf), np.inf) if bounds else ():
             if _is_mended(layout, group, moved, way.exact, design):
@@ -310,7 +310,7 @@ def _least(
                 break
 
 
-def _on_grid(stretch: Stretch, bounds: Bounds, x: FloatArray, most: float) -> Iterator[FloatArray]:
+def _on_grid(stretch: FreePoints, bounds: Bounds, x: FloatArray, most: float) -> Iterator[FloatArray]:
     """Points on the grid near the least moves, and then near those that leave more room for rounding."""
     yield stretch.places_of(stretch.on_grid(x, bounds, most))
     tighter = bounds._replace(most=np.where(bounds.is_jump[:, None], 1.0, TIGHTER) * bounds.most)
@@ -335,7 +335,7 @@ def _proposal(
     return Proposal(numbers, points[:, numbers], distance)
 
 
-def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, design: Design) -> bool:
+def _is_mended(layout: ContourLayout, group: Group, points: FloatArray, exact: bool, design: Design) -> bool:
     """Whether the joints of a group turn by no more than they may, at the places; of a jump that is checked later."""
     if group.kind == "kink":
         controls = joint_controls(MasterContour(points, layout.degrees))[:, group.joints]
@@ -347,7 +347,7 @@ def _is_mended(layout: Layout, group: Group, points: FloatArray, exact: bool, de
     return True
 
 
-def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> Bounds | None:
+def bounds_of(stretch: FreePoints, group: Group, way: Way, design: Design) -> Bounds | None:
     """What the joints of a stretch may turn, and their curvature jump; None where handles have no length."""
     layout, limits, found = stretch.layout, design.thresholds, []
     for joint in stretch.joints.tolist():
@@ -376,12 +376,12 @@ def bounds_of(stretch: Stretch, group: Group, way: Way, design: Design) -> Bound
 
 
 def _settled(
-    first: Masters, now: Masters, groups: Sequence[Group], before: State, design: Design,
-    check: Callable[[Masters], tuple[Masters, State]],
-) -> tuple[Masters, State]:  # fmt: skip
+    first: Masters, now: Masters, groups: Sequence[Group], before: Tally, design: Design,
+    check: Callable[[Masters], tuple[Masters, Tally]],
+) -> tuple[Masters, Tally]:  # fmt: skip
     """The glyph with those proposals that stand together, and what is found in it."""
 
-    def trials() -> Iterator[tuple[Masters, State, int]]:
+    def trials() -> Iterator[tuple[Masters, Tally, int]]:
         while any(group.now for group in groups):
             trial, after = with_moves(now, [(group.contour, group.now) for group in groups if group.now]), before
             given_up = _far(first, trial, groups, design)
@@ -415,7 +415,7 @@ def _far(old: Masters, new: Masters, groups: Sequence[Group], design: Design) ->
     return _once(found)
 
 
-def _found_new(trial: Masters, groups: Sequence[Group], before: State, after: State) -> list[tuple[Group, str]]:
+def _found_new(trial: Masters, groups: Sequence[Group], before: Tally, after: Tally) -> list[tuple[Group, str]]:
     """Groups in which there is still what was found, or that bring new findings."""
     found = []
     for group in groups:
@@ -431,7 +431,7 @@ def _found_new(trial: Masters, groups: Sequence[Group], before: State, after: St
 
 def _spoiling(
     first: Masters, now: Masters, groups: Sequence[Group], design: Design,
-    check: Callable[[Masters], tuple[Masters, State]],
+    check: Callable[[Masters], tuple[Masters, Tally]],
 ) -> Group:  # fmt: skip
     """A group whose move changes the ink by itself, or else the one that moves curves the most."""
     moving = [(group.now, group) for group in groups if group.now]
@@ -449,7 +449,7 @@ def _once(found: Sequence[tuple[Group, str]]) -> list[tuple[Group, str]]:
 
 
 def _results(
-    mended: Mapping[Place, Change], layouts: Mapping[int, Layout], first: Masters, now: Masters, design: Design
+    mended: Mapping[Place, Change], layouts: Mapping[int, ContourLayout], first: Masters, now: Masters, design: Design
 ) -> Iterator[tuple[Place, Change]]:
     """What became of joints that are mended; of a point beside two of them the first one has the move."""
     taken = set[tuple[int, int]]()

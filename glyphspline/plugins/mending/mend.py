@@ -24,7 +24,7 @@ from .ink import INK, keeps_ink
 from .joints import starts_of
 from .kinks import BEYOND, SMOOTHED, Group, proposals, settled
 from .shapes import Proposal, moved, shape_moves
-from .state import PER_EM, Change, Design, Into, Key, State, distances
+from .state import PER_EM, Change, Design, Into, Key, Tally, distances
 
 TRIES = 24
 """Moves of a joint that are checked for new findings at most."""
@@ -70,7 +70,7 @@ def mend(
     check_kinds(kinds)
     require(tolerance is None or is_positive(tolerance), "tolerance is a positive number", tolerance)
     masters = Masters.of(glyph) if isinstance(glyph, Outline) else glyph
-    found, changes = mended(masters, State.of(masters, thresholds, outer), kinds, tolerance, thresholds, outer)
+    found, changes = mended(masters, Tally.of(masters, thresholds, outer), kinds, tolerance, thresholds, outer)
     if found is masters:
         return glyph, changes
     return (replace(glyph, contours=found.master(0).contours) if isinstance(glyph, Outline) else found), changes
@@ -84,7 +84,7 @@ def check_kinds(kinds: Collection[str]) -> None:
 
 
 def mended(
-    masters: Masters, state: State, kinds: Collection[str], tolerance: float | None, thresholds: Thresholds, outer: int,
+    masters: Masters, state: Tally, kinds: Collection[str], tolerance: float | None, thresholds: Thresholds, outer: int,
     into: Into = ANYWHERE,
 ) -> tuple[Masters, list[Change]]:  # fmt: skip
     """As :func:`mend`; ``state``: what is found in it. ``into``: what it goes back into."""
@@ -121,18 +121,18 @@ class _Glyph:
         x, y = contour.points[0, starts_of(contour)[segment]].tolist()
         return Change(self.masters.name, self.masters.gid, kind, c, segment, (x, y), value)
 
-    def checked(self, glyph: Masters) -> tuple[Masters, State]:
+    def checked(self, glyph: Masters) -> tuple[Masters, Tally]:
         """What the file makes of a glyph, and what is found in it."""
         stored = glyph if self.into.stored is None else self.into.stored(glyph)
-        return stored, State.of(stored, self.thresholds, self.outer)
+        return stored, Tally.of(stored, self.thresholds, self.outer)
 
-    def moved(self, now: Masters, before: State, kind: str) -> tuple[Masters, State, list[Change]]:
+    def moved(self, now: Masters, before: Tally, kind: str) -> tuple[Masters, Tally, list[Change]]:
         """Mend the findings of a kind by moves: the glyph, what is found in it then, and what became of them."""
         changes = {place: self.change(kind, place, value) for place, value in before.values[kind].items()}
         ways = proposals if kind in SMOOTHED else shape_proposals
         return settled(self.masters, now, before, changes, kind, self.design, self.checked, self.into.fixed, ways)
 
-    def edited(self, now: Masters, before: State, kinds: Sequence[str]) -> tuple[Masters, list[Change]]:
+    def edited(self, now: Masters, before: Tally, kinds: Sequence[str]) -> tuple[Masters, list[Change]]:
         """Mend findings for which points go, one after the other."""
         contours = [Edited.of(*each) for each in zip(now.contours, now.repeats_of, strict=True)]
         changes, most = [], before.found.total()
@@ -155,7 +155,7 @@ class _Glyph:
     def _tried(
         self,
         now: Masters,
-        before: State,
+        before: Tally,
         change: Change,
         contours: Sequence[Edited],
         tries: Iterator[Edited],
@@ -175,7 +175,7 @@ class _Glyph:
         for bound, one in sorted(near, key=lambda each: each[0]):
             others = [*contours[:c], one, *contours[c + 1 :]]
             trial = _edited(now, others)
-            after = State.of(trial, self.thresholds, self.outer)
+            after = Tally.of(trial, self.thresholds, self.outer)
             new = _renumbered(after.found, others, True) - _renumbered(before.found, others, False)
             names, needs = [KINDS[what].name for what, *_ in new], None
             if names or after.found.total() >= most:

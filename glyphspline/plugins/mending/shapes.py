@@ -19,7 +19,7 @@ from ...outlines.flaws.turns import joint_controls, turns_of
 from ...outlines.masters import MasterContour, Masters
 from ...types import FloatArray, IntArray
 from .extrema import extremum_moves, level_moves
-from .joints import SMOOTH, Layout, Move, starts_of
+from .joints import SMOOTH, ContourLayout, Move, starts_of
 from .state import Change
 
 NEARLY = np.tan(np.radians(1.0))
@@ -76,7 +76,7 @@ def with_nodes(contour: MasterContour, numbers: IntArray, places: FloatArray, st
 
 def moved(contour: MasterContour, numbers: IntArray, places: FloatArray) -> MasterContour:
     """A contour after a move; a node midway between two control points of quadratics stays so, as fonts imply it."""
-    points, at = contour.points.copy(), np.flatnonzero(Layout(contour).implied)
+    points, at = contour.points.copy(), np.flatnonzero(ContourLayout(contour).implied)
     points[:, numbers] = places
     points[:, at] = (points[:, at - 1] + points[:, (at + 1) % points.shape[1]]) / 2
     return MasterContour(points, contour.degrees)

@@ -15,7 +15,7 @@ from ...curves.bezier import cross
 from ...outlines.flaws.turns import joint_controls, jumps_of, turns_of
 from ...types import BoolArray, FloatArray
 from .balance import curvatures_at
-from .joints import EXACT, SMOOTH, Layout
+from .joints import EXACT, SMOOTH, ContourLayout
 from .shapes import moved, with_nodes
 from .state import Design
 
@@ -44,7 +44,7 @@ Option = tuple[int, FloatArray, float]
 """A point, its new places (K, 2), and what a change of its handle's length costs."""
 
 
-def single_handles(layout: Layout, joints: Sequence[int], kind: str, design: Design) -> list[FloatArray]:
+def single_handles(layout: ContourLayout, joints: Sequence[int], kind: str, design: Design) -> list[FloatArray]:
     """Points (K, N, 2) after which each of these joints may be smooth; that which fits the curves best comes first."""
     if len(joints) > MOST:
         return []
@@ -73,7 +73,7 @@ def single_handles(layout: Layout, joints: Sequence[int], kind: str, design: Des
     return [points for _, points in sorted(found, key=lambda each: each[0])]
 
 
-def _turned(layout: Layout, joint: int, step: float) -> Iterator[Option]:
+def _turned(layout: ContourLayout, joint: int, step: float) -> Iterator[Option]:
     """Ways to turn one handle at a joint: about its node, or to where it meets the line of the other end, too."""
     m, node = len(layout.degrees), layout.points[:, layout.starts[joint]]
     for side in (0, 1):
@@ -100,7 +100,7 @@ def _turned(layout: Layout, joint: int, step: float) -> Iterator[Option]:
                 yield int(number), places, SLIDE * float(np.abs(each / length - 1).max())
 
 
-def _slid(layout: Layout, joint: int, step: float) -> Iterator[Option]:
+def _slid(layout: ContourLayout, joint: int, step: float) -> Iterator[Option]:
     """Ways to slide the end of one handle along it, until curvatures meet at a joint."""
     node, around = layout.points[:, layout.starts[joint]], layout.points[:, layout.around(joint)]
     ends = curvatures_at(around)  # (2, K)
@@ -118,10 +118,7 @@ def _on_grid(
     old: FloatArray, node: FloatArray, way: FloatArray, length: FloatArray, frozen: BoolArray, step: float,
     keep: bool = True,
 ) -> FloatArray:  # fmt: skip
-    """(K, 2) places on the grid near so much along the way from nodes; the old ones where those are as good.
-
-    ``frozen``: (K, 2) coordinates that stay.
-    """
+    """(K, 2) places on the grid near so far along the way from nodes, old ones if as good; ``frozen``: (K, 2) stay."""
     best = node + length[:, None] * way
     around = np.stack(np.meshgrid(*[np.arange(-REACH, REACH + 1.0)] * 2), axis=-1).reshape(-1, 1, 2)
     tried = np.where(frozen, old, step * (np.round(best / step) + around))  # (T, K, 2)

@@ -19,7 +19,7 @@ from ...types import FloatArray, IntArray
 from ..checks.check import measured
 from ..checks.finding import Measured
 from ..masters.on_axes import OF_CONTOURS, on_axes
-from .joints import SMOOTH, Layout, starts_of
+from .joints import SMOOTH, ContourLayout, starts_of
 
 PER_EM = 1e-3
 """The tolerance as a share of the em, unless another is given."""
@@ -79,7 +79,7 @@ class Change:
         return self.why is None
 
 
-class State:
+class Tally:
     """What is found in a glyph: the number of findings by what they are, and their values by kind and place."""
 
     def __init__(self, rows: Measured) -> None:
@@ -90,13 +90,13 @@ class State:
             self.values[KINDS[what].name].setdefault((c, s), value)
 
     @classmethod
-    def of(cls, masters: Masters, thresholds: Thresholds, outer: int) -> State:
+    def of(cls, masters: Masters, thresholds: Thresholds, outer: int) -> Tally:
         """Check a glyph: where it is, or in its masters and along all its axes."""
         (found,) = cls.of_many([masters], thresholds, outer)
         return found
 
     @classmethod
-    def of_many(cls, glyphs: Sequence[Masters], thresholds: Thresholds, outer: int) -> list[State]:
+    def of_many(cls, glyphs: Sequence[Masters], thresholds: Thresholds, outer: int) -> list[Tally]:
         """The same for glyphs of one source, which takes less time for each."""
         axes, em = glyphs[0].axes, glyphs[0].metrics.units_per_em
         if axes:
@@ -159,7 +159,7 @@ class Design(NamedTuple):
         if axes:
             weights = masters.weights_at(np.unique(np.concatenate(places), axis=0))
             grid = masters.weights_at(masters.grid()).reshape(*(len(masters.ticks(a)) for a in axes), -1)
-        drawn = [contour.points[:, ~Layout(contour).implied].ravel() for contour in masters.contours]
+        drawn = [contour.points[:, ~ContourLayout(contour).implied].ravel() for contour in masters.contours]
         every = np.concatenate([np.zeros(1), *drawn])
         digits = (d for d in range(DIGITS) if np.abs(every - np.round(every, d)).max() < 1e-6)
         step, em = step or float(10.0 ** -next(digits, DIGITS)), float(masters.metrics.units_per_em)

@@ -22,7 +22,7 @@ from .ink import INK, keeps_ink
 from .state import DIGITS, PER_EM, Design
 
 
-class New(NamedTuple):
+class MendedGlyph(NamedTuple):
     """A glyph as it was and mended; ``redrawn``: contours of which points went or changed their order."""
 
     old: Masters
@@ -31,7 +31,7 @@ class New(NamedTuple):
 
 
 def write(
-    source: EditableSource | Font, glyphs: Sequence[New], copy: Path | None, layer: str | None = None,
+    source: EditableSource | Font, glyphs: Sequence[MendedGlyph], copy: Path | None, layer: str | None = None,
     dry: bool = False,
 ) -> Written:  # fmt: skip
     """Write mended glyphs into a source, a layer of it or a copy; see :func:`.back.write_back`."""
@@ -42,7 +42,7 @@ def write(
 
 
 def spoiling(
-    source: EditableSource | Font, glyphs: Iterable[New], tolerance: float | None, thresholds: Thresholds,
+    source: EditableSource | Font, glyphs: Iterable[MendedGlyph], tolerance: float | None, thresholds: Thresholds,
     pool: Executor,
 ) -> dict[str, str]:  # fmt: skip
     """The mended glyphs that would change a composite's ink, or their own, as not all is written; and why they stay.
@@ -72,7 +72,7 @@ def spoiling(
 
 
 def _in_part(
-    source: EditableSource | Font, glyphs: Sequence[New], tolerance: float | None, thresholds: Thresholds
+    source: EditableSource | Font, glyphs: Sequence[MendedGlyph], tolerance: float | None, thresholds: Thresholds
 ) -> list[str]:
     """Glyphs of which only some contours can be written, so that the ink changes."""
     kept, found = write(source, glyphs, None, dry=True).contours, []

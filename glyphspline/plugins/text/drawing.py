@@ -9,7 +9,7 @@ from itertools import groupby
 import numpy as np
 
 from ...errors import OptionError
-from ...fitting.results import GlyphResult, end_to_end
+from ...fitting.results import GlyphResult, joined_results
 from ...writers.settings import PLAIN, Appearance
 from ...writers.svg.document import head, inked, number, painting, shown_as, shown_box, stroking, text
 from ...writers.svg.path_data import curves_data
@@ -33,7 +33,7 @@ def text_document(layout: Layout, results: Sequence[GlyphResult], look: Appearan
         raise OptionError("bare: such a drawing is one path, and here each glyph is an element of its own")
     precision = results[0].options.precision if results else 2
     em = layout.fonts[0].metrics.units_per_em
-    arrays, offsets = end_to_end(results)
+    arrays, offsets = joined_results(results)
     paths = curves_data(arrays.curves, precision, offsets)
     said = [path.text + path.strokes for path in paths]
     digest = sha256(repr((layout.text, layout.origin.tolist(), said)).encode()).hexdigest()[:8]

@@ -19,7 +19,7 @@ from ...outlines.outline import Outline
 from ...readers.pens import NO_AREA
 from ...runs.choice import is_plain
 from ...runs.convert import ConvertJob
-from ...runs.engine import Item, Job, reason, run, settle, work
+from ...runs.engine import Item, Job, choose_to_compile, reason, run, work
 from ...runs.pool import TimeLimitError, WorkerLostError, sign_of_life
 from ...runs.schedule import Place, place_of, sources
 from ...runs.spec import LIMITS, MAPS
@@ -129,7 +129,7 @@ def draw(job: TextJob, pool: Executor) -> Drawings:
     """
     layout = job.layout
     trial, glyphs = TrialJob(tuple(map(place_of, layout.fonts)), job.options), layout.distinct()
-    settle(trial, glyphs, pool, len(glyphs))
+    choose_to_compile(trial, glyphs, pool, len(glyphs))
     job = replace(job, alone=is_plain(pool))
     try:
         return pool.submit(drawings, job).result()

@@ -13,7 +13,7 @@ import numpy as np
 from ...errors import GlyphsplineError
 from ...fitting.convert import DEFAULTS, convert_many
 from ...fitting.options import Options
-from ...fitting.results import ContourResults, GlyphResult, as_glyphs, end_to_end
+from ...fitting.results import ContourResults, GlyphResult, as_glyphs, joined_results
 from ...outlines.contour_arrays import ContourArrays, joined, members_of, offsets_of
 from ...outlines.outline import Contours, FontMetrics, Outline
 from ...readers import Source
@@ -171,7 +171,7 @@ class Layout:
 
     def _placed(self, parts: Parts, glyphs: Sequence[GlyphResult], options: Options) -> GlyphResult:
         notes = [f"glyph {g.outline.name!r}: {note}" for g in glyphs for note in (*g.outline.notes, *g.notes)]
-        found, ends = end_to_end(glyphs)
+        found, ends = joined_results(glyphs)
         which, motion = _chosen(ends, parts)
         outline = self._as_outline(found.source, ends, parts)
         results = ContourResults(moved_results(found, which, motion))

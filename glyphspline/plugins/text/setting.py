@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, Literal, TypeAlias
 
 from ...errors import is_number
-from ...fields import Rule, check, checked, positive
+from ...fields import Condition, check, checked, positive
 from ...readers.characters import Feature, parsed_features
 
 Direction: TypeAlias = Literal["ltr", "rtl", "ttb", "btt"]
@@ -25,8 +25,8 @@ def _is_script(code: Any) -> bool:
     return isinstance(code, str) and bool(script_name(code.title(), ""))
 
 
-SCRIPT = Rule("a code of ISO 15924, such as 'Latn' or 'Arab'", _is_script)
-TAG = Rule(
+SCRIPT = Condition("a code of ISO 15924, such as 'Latn' or 'Arab'", _is_script)
+TAG = Condition(
     "a tag of BCP 47, such as 'de' or 'zh-Hant'", lambda tag: bool(isinstance(tag, str) and LANGUAGE.fullmatch(tag))
 )
 LENGTH = positive("length in font units")
@@ -44,7 +44,7 @@ class Setting:
     align: Align = checked("start")
     line_height: float | None = checked(None, LENGTH)
     orientation: Orientation = checked("mixed")
-    letter_spacing: float = checked(0.0, Rule("a finite length in font units", is_number))
+    letter_spacing: float = checked(0.0, Condition("a finite length in font units", is_number))
     parsed_features: tuple[Feature, ...] = field(init=False)
 
     def __post_init__(self) -> None:

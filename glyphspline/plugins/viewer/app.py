@@ -32,7 +32,7 @@ from ...report.gallery import measures
 from ...writers.svg.comb import palette
 from ...writers.svg.document import to_svg
 from .conversion import COMPARED, Work, glyph_payload, instance_payload, result_payload, step_payload, steps
-from .requests import State, read_state, search
+from .requests import PageState, read_state, search
 
 HOST = "127.0.0.1"
 
@@ -183,19 +183,19 @@ def first_glyph(work: Work) -> str:
     return next(filter(work.has_ink, candidates), (candidates or font.glyph_names)[0])
 
 
-def glyph_answer(work: Work, state: State) -> dict[str, Any]:
+def glyph_answer(work: Work, state: PageState) -> dict[str, Any]:
     """The glyph by the variant of the state, and the command that converts it."""
     result = work.result(state)
     return glyph_payload(result.outline) | result_payload(result) | {"command": work.command(state)}
 
 
-def compare_answer(work: Work, state: State) -> dict[str, Any]:
+def compare_answer(work: Work, state: PageState) -> dict[str, Any]:
     """The polygon by the variants 1, 2 and 3, all measured, so that the same numbers are shown for each."""
     state = replace(state, options=replace(state.options, measure=True))
     return {"results": [result_payload(work.result(state, each)) for each in COMPARED]}
 
 
-def masters_answer(work: Work, state: State) -> dict[str, Any]:
+def masters_answer(work: Work, state: PageState) -> dict[str, Any]:
     """The glyph, converted in all masters at once, at a location; and the command that draws it along an axis."""
     if not work.font.axes:
         raise GlyphsplineError("not a variable font: it has no axes", font=str(work.path))
@@ -205,7 +205,7 @@ def masters_answer(work: Work, state: State) -> dict[str, Any]:
     }
 
 
-ANSWERS: dict[str, Callable[[Work, State], dict[str, Any]]] = {
+ANSWERS: dict[str, Callable[[Work, PageState], dict[str, Any]]] = {
     "glyph": glyph_answer,
     "compare": compare_answer,
     "masters": masters_answer,
@@ -224,7 +224,7 @@ def _answer(make: Callable[[Request], Any]) -> Callable[[Request], Any]:
     return endpoint
 
 
-def _computed(work: Work, make: Callable[[Work, State], dict[str, Any]]) -> Callable[[Request], Any]:
+def _computed(work: Work, make: Callable[[Work, PageState], dict[str, Any]]) -> Callable[[Request], Any]:
     """An endpoint that reads a state; errors in it, or in the glyph, are answers too."""
 
     async def endpoint(request: Request) -> Response:

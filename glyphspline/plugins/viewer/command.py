@@ -7,7 +7,7 @@ from typing import Annotated
 
 from ...cli import arguments as opt
 from ...cli.convert import chosen, opened
-from ...cli.groups import grouped, only, place, without
+from ...cli.groups import as_path, grouped, only, without
 from ...cli.messages import progress, say, stop
 from ...extras import need
 from ...fields import About
@@ -40,7 +40,7 @@ def atlas(
     options: Annotated[Options, without("measure", "precision", "remove_overlaps")],
     run: Annotated[opt.RunOptions, only("jobs", "quiet")],
     instance: opt.Instance,
-    out: Annotated[Path, opt.out("Write this PDF.", "FILE", parser=place)] = Path("atlas.pdf"),
+    out: Annotated[Path, opt.out("Write this PDF.", "FILE", parser=as_path)] = Path("atlas.pdf"),
     axis: Annotated[
         str | None,
         About(

@@ -35,7 +35,7 @@ from ...writers.json_file import finite
 from ...writers.svg.comb import curvature_scale
 from ...writers.svg.document import code_points
 from ...writers.svg.path_data import path_data, polyline_data
-from .requests import Moved, State
+from .requests import Moved, PageState
 
 COMPARED = (1, 2, 3)
 """Variants shown side by side, as in the paper's Figs. 8 and 9."""
@@ -79,7 +79,7 @@ class Work:
             masters = self.font.masters(glyph)
         return service("convert_masters")(masters, options)
 
-    def result(self, state: State, variant: int | None = None) -> GlyphResult:
+    def result(self, state: PageState, variant: int | None = None) -> GlyphResult:
         """The glyph of a state, or of the state with another variant.
 
         On smooth contours another variant interpolates the same polygon, so only the variant differs. Sharp contours
@@ -94,7 +94,7 @@ class Work:
         contours = tuple(through(contour, contour.polygon, options) for contour in result.contours)
         return replace(result, options=options, contours=contours)
 
-    def text(self, state: State) -> tuple[str, list[str]]:
+    def text(self, state: PageState) -> tuple[str, list[str]]:
         """The text of a state as an SVG drawing, each distinct glyph converted once, and remarks."""
         with self.lock:
             placed = service("layout")(self.at(state.location), state.text)
@@ -117,7 +117,7 @@ class Work:
         # A broken glyph has its error when it is shown.
         return curvature_scale(as_glyph(self.outline(name, ())) for name in filter(self.has_ink, chosen)) or 4 / self.em
 
-    def command(self, state: State, along: str | None = None) -> str:
+    def command(self, state: PageState, along: str | None = None) -> str:
         """The command that converts the glyph, without moved vertices, or that draws it ``along`` an axis.
 
         Curves as fonts store them are those of ``refit``.

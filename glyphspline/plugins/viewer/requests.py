@@ -30,7 +30,7 @@ Moved = tuple[tuple[int, int, float, float], ...]
 
 
 @dataclass(frozen=True)
-class State:
+class PageState:
     """One valid request of the page; ``options`` are those for :func:`glyphspline.fitting.convert`."""
 
     glyph: str
@@ -40,7 +40,7 @@ class State:
     text: str = ""
 
 
-def read_state(given: Any, units_per_em: float) -> State:
+def read_state(given: Any, units_per_em: float) -> PageState:
     """Validate a parsed request.
 
     Raises:
@@ -69,7 +69,7 @@ def read_state(given: Any, units_per_em: float) -> State:
     text = given.get("text") or ""
     if not isinstance(text, str) or len(text) > LONGEST_TEXT:
         raise GlyphsplineError(f"text is a string of at most {LONGEST_TEXT} characters")
-    return State(given["glyph"], place, options, _moved(given.get("moved") or []), text)
+    return PageState(given["glyph"], place, options, _moved(given.get("moved") or []), text)
 
 
 def _number(given: Mapping[str, Any], key: str, default: float) -> float:

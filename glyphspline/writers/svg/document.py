@@ -12,7 +12,7 @@ from html import escape
 from typing import NamedTuple
 
 from ...errors import require_choice
-from ...fitting.results import GlyphResult, end_to_end
+from ...fitting.results import GlyphResult, joined_results
 from ...outlines.contour_arrays import joined, offsets_of
 from ...outlines.outline import Outline
 from ..settings import CURRENT, VIEW_BOXES, Appearance, Settings, ViewBox
@@ -162,7 +162,7 @@ def source_data(glyphs: Sequence[GlyphResult]) -> list[PathData]:
 def polygon_data(glyphs: Sequence[GlyphResult]) -> list[PolygonData]:
     """Path data of the polygons of glyphs, at least one, that have the same options and em."""
     precision, coarse = glyphs[0].options.precision, comb_precision(glyphs[0].outline.metrics.units_per_em)
-    arrays, offsets = end_to_end(glyphs)
+    arrays, offsets = joined_results(glyphs)
     polygon = polylines_data(arrays.polygons, precision, offsets)
     control = polylines_data(arrays.controls, coarse, arrays.arc_offsets[offsets])
     return [PolygonData(*parts) for parts in zip(polygon, control, strict=True)]

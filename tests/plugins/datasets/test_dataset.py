@@ -33,7 +33,7 @@ from glyphspline.cli.app import app
 from glyphspline.plugins.datasets.canonical_outlines import canonical_outlines
 from glyphspline.plugins.datasets.card import command
 from glyphspline.plugins.datasets.kept import Made
-from glyphspline.plugins.datasets.plan import Plan, Task, plan_of
+from glyphspline.plugins.datasets.plan import DatasetTask, Plan, plan_of
 from glyphspline.plugins.datasets.run import RowsJob
 from glyphspline.plugins.datasets.scan import SPLITS, FontFacts, licence_of, split_of
 from glyphspline.plugins.datasets.spec import DatasetSpec, Sizes
@@ -245,7 +245,7 @@ class Scrambled(Executor):
         return future
 
     def finish(self, future: Future[Any], fn: Callable[..., Any], args: tuple[Any, ...]) -> None:
-        tasks: list[Task] = args[1]
+        tasks: list[DatasetTask] = args[1]
         if any(task.at == self.lost for task in tasks):
             future.set_exception(WorkerLostError("the worker process died"))
         else:

@@ -10,7 +10,7 @@ from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.ttLib import TTFont
 
 import glyphspline as gs
-from glyphspline.plugins.fonts.tables.stored import Stored, compared, stored_facts
+from glyphspline.plugins.fonts.tables.stored import StoredFacts, compared, stored_facts
 from tests.places import DEJAVU, GYOSHO
 
 
@@ -34,7 +34,7 @@ def cubic_font(path: Path, shift: float) -> Path:
     return path
 
 
-def facts(path: Path, *gids: int) -> Stored:
+def facts(path: Path, *gids: int) -> StoredFacts:
     return stored_facts(gs.open_font(path), gids)
 
 
@@ -56,7 +56,7 @@ def test_jumps_are_counted_of_fonts_of_cubics_alone(tmp_path: Path) -> None:
 
 
 def test_more_points_are_said_to_be_more() -> None:
-    of_cubics, of_quadratics = Stored(10, 40, 0, 0), Stored(18, 36, 0, None)
+    of_cubics, of_quadratics = StoredFacts(10, 40, 0, 0), StoredFacts(18, 36, 0, None)
     because = "points 36 → 40 (more: a cubic has two off the curve, a quadratic one)"
     assert because in compared(of_quadratics, of_cubics)
     assert "points 40 → 36," in compared(of_cubics, of_quadratics)

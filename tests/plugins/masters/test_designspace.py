@@ -13,7 +13,7 @@ from fontTools.designspaceLib import DesignSpaceDocument
 from fontTools.ufoLib import UFOWriter
 
 from glyphspline import FontError, GlyphsplineError, open_source
-from glyphspline.plugins.fonts.back.back import New, write_back
+from glyphspline.plugins.fonts.back.back import NewGlyph, write_back
 from glyphspline.plugins.masters.designspace import Designspace
 from glyphspline.readers import Source
 from glyphspline.readers.ufo import Ufo
@@ -435,7 +435,7 @@ def test_corner_components_are_applied_and_caps_are_named(tmp_path: Path) -> Non
     assert corners(source, "I") == [[0, 700], *serif, [100, 0], [100, 700]]
     assert [source.outline(name).unread for name in "HI"] == [("cap components",), ()]
     assert [source.masters(name).unread for name in "HI"] == [("cap components",), ()]
-    new = [New(name, [source.outline(name).contours], source.drawings(name)) for name in "I"]
+    new = [NewGlyph(name, [source.outline(name).contours], source.drawings(name)) for name in "I"]
     found = write_back(source, new, 0, dry=True)
     assert not found.names
     assert "corner components" in found.kept["I"]

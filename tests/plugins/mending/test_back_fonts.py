@@ -21,7 +21,7 @@ from glyphspline.cli.app import app
 from glyphspline.plugins.fonts.back.programs import unflexed
 from glyphspline.plugins.mending.job import into_of
 from glyphspline.plugins.mending.mend import mended
-from glyphspline.plugins.mending.state import State
+from glyphspline.plugins.mending.state import Tally
 from tests.places import FONTS
 from tests.variable_drawings import changed_tables
 from tests.variable_fonts import quadratic, variable_font
@@ -158,7 +158,7 @@ def test_blends_change_in_a_variable_font_of_cubics(tmp_path: Path) -> None:
     strings["a"].decompile()
     assert "hstem" in strings["a"].program
     masters = gs.open_font(font).masters("a")
-    state, into = State.of(masters, gs.Thresholds(), 1), into_of(gs.open_font(font), masters)
+    state, into = Tally.of(masters, gs.Thresholds(), 1), into_of(gs.open_font(font), masters)
     expected, _ = mended(masters, state, ["kink"], 5.0, gs.Thresholds(), 1, into)
     assert np.allclose(expected.contours[0].points, gs.open_font(new).masters("a").contours[0].points, atol=1e-4)
 

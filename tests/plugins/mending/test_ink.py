@@ -17,7 +17,7 @@ from fontTools.ufoLib import UFOWriter
 import glyphspline as gs
 from glyphspline.outlines.flaws.kinds import MENDED
 from glyphspline.outlines.outline import Contour
-from glyphspline.plugins.mending.job import Asked, MendedSource, mend_source
+from glyphspline.plugins.mending.job import MendedSource, Scope, mend_source
 from glyphspline.readers import open_source
 from glyphspline.readers.ufo import Ufo
 from scripts.drawn_fonts import begun, ended
@@ -170,7 +170,7 @@ def mended(path: Path, kinds: tuple[str, ...]) -> tuple[MendedSource, Any]:
     """What became of the source, and what is drawn then."""
     source, copy = open_source(path), path.with_name(f"{'-'.join(kinds)}.ufo")
     assert isinstance(source, Ufo)
-    found = mend_source(source, source.glyph_names, Asked(kinds, TOLERANCE), copy=copy)
+    found = mend_source(source, source.glyph_names, Scope(kinds, TOLERANCE), copy=copy)
     assert not found.failed
     return found, drawings(copy)
 
@@ -215,7 +215,7 @@ def test_in_a_font_composites_keep_their_ink_too(planted: Path, tmp_path: Path) 
     bearings = {name: (600, getattr(builder.font["glyf"][name], "xMin", 0)) for name in drawn}
     ended(builder, bearings, "Planted").save(tmp_path / "planted.ttf")
     font = gs.open_font(tmp_path / "planted.ttf")
-    found = mend_source(font, font.glyph_names, Asked(MENDED, TOLERANCE), copy=tmp_path / "mended.ttf")
+    found = mend_source(font, font.glyph_names, Scope(MENDED, TOLERANCE), copy=tmp_path / "mended.ttf")
     old, new = drawings(tmp_path / "planted.ttf"), drawings(tmp_path / "mended.ttf")
     changed = [name for name in old if not alike(old[name], new[name])]
     assert {"slit", "slit_mirrored"} <= {*changed}

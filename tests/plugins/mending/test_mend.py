@@ -23,7 +23,7 @@ from glyphspline.outlines.flaws.kinds import THRESHOLDS
 from glyphspline.outlines.masters import DesignAxis, MasterContour
 from glyphspline.outlines.outline import Contour
 from glyphspline.plugins.checks.finding import Finding
-from glyphspline.plugins.mending.joints import Layout
+from glyphspline.plugins.mending.joints import ContourLayout
 from glyphspline.plugins.mending.shapes import with_nodes
 from glyphspline.plugins.mending.state import Design, distances
 from glyphspline.readers import open_source
@@ -526,9 +526,9 @@ def test_a_short_handle_that_is_level_in_one_master_only_may_turn() -> None:
     regular = [(0, 0), (120, 40), (200, 66), (260, 86), (300, 60), (300, 0)]
     bold = [(0, 0), (240, 32), (246, 32), (254, 32), (300, 10), (300, 0)]
     contour = MasterContour(np.array([regular, bold], dtype=np.float64), np.array([1, 3, 1, 1]))
-    assert not Layout(contour).frozen[1, [1, 2]].all()
+    assert not ContourLayout(contour).frozen[1, [1, 2]].all()
     level = MasterContour(contour.points * [1, 0] + [0, 7], contour.degrees)
-    assert Layout(level).frozen[:, [1, 2], 1].all()
+    assert ContourLayout(level).frozen[:, [1, 2], 1].all()
 
 
 def test_a_joint_that_slides_along_a_line_costs_what_curves_move() -> None:

@@ -41,7 +41,7 @@ class Subpath:
 Path: TypeAlias = list[Subpath]
 
 
-class Drawn:
+class DrawnPath:
     """A path as it is drawn."""
 
     def __init__(self) -> None:
@@ -108,7 +108,7 @@ def arc_cubics(arc: Any) -> Iterator[list[complex]]:
 
 def parsed_path(data: str) -> tuple[Path, int | None]:
     """The subpaths of path data up to the first error, and at which character that is; None without one."""
-    drawn, at, command = Drawn(), 0, ""
+    drawn, at, command = DrawnPath(), 0, ""
     control: tuple[int, Point] = (0, (0.0, 0.0))  # degree and last control point of the segment before
     while not END.match(data, at):
         if found := COMMAND.match(data, at):
@@ -145,7 +145,7 @@ def _arguments(data: str, at: int, command: str) -> tuple[list[float] | None, in
     return numbers, at
 
 
-def _segment(drawn: Drawn, command: str, numbers: list[float], control: tuple[int, Point]) -> tuple[int, Point]:
+def _segment(drawn: DrawnPath, command: str, numbers: list[float], control: tuple[int, Point]) -> tuple[int, Point]:
     """Draw a segment; returns its degree and last control point, if it is a quadratic or cubic."""
     kind, (x, y) = command.upper(), drawn.here
     dx, dy = (x, y) if command.islower() else (0.0, 0.0)

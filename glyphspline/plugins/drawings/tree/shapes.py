@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from .lengths import Lengths, numbers
-from .path_data import Drawn, Path, parsed_path
+from .path_data import DrawnPath, Path, parsed_path
 
 Get = Callable[[str], str | None]
 """The value of an attribute, or of the property of its name."""
@@ -54,7 +54,7 @@ def _rect(get: Get, lengths: Lengths) -> Path:
     rx, ry = (_size(name, get, lengths) for name in ("rx", "ry"))
     rx, ry = (ry if rx is None else rx) or 0.0, (rx if ry is None else ry) or 0.0
     rx, ry = min(rx, width / 2), min(ry, height / 2)
-    drawn, (right, bottom) = Drawn(), (x + width, y + height)
+    drawn, (right, bottom) = DrawnPath(), (x + width, y + height)
     if not (rx and ry):
         corners = [(x, y), (right, y), (right, bottom), (x, bottom)]
         return _closed(drawn, corners)
@@ -86,7 +86,7 @@ def _oval(get: Get, lengths: Lengths, rx: float, ry: float) -> Path:
     if not (rx and ry):
         return []
     cx, cy = (length(name, get, lengths) or 0.0 for name in ("cx", "cy"))
-    drawn = Drawn()
+    drawn = DrawnPath()
     drawn.move((cx + rx, cy))
     for to in ((cx, cy + ry), (cx - rx, cy), (cx, cy - ry), (cx + rx, cy)):
         drawn.arc(rx, ry, 0.0, False, True, to)
@@ -95,7 +95,7 @@ def _oval(get: Get, lengths: Lengths, rx: float, ry: float) -> Path:
 
 
 def _line(get: Get, lengths: Lengths) -> Path:
-    drawn = Drawn()
+    drawn = DrawnPath()
     x1, y1, x2, y2 = (length(name, get, lengths) or 0.0 for name in ("x1", "y1", "x2", "y2"))
     drawn.move((x1, y1))
     drawn.add((x2, y2))
@@ -111,7 +111,7 @@ def _polyline(get: Get, lengths: Lengths) -> Path:
     points = list(zip(found[::2], found[1::2], strict=False))
     if not points:
         return []
-    drawn = Drawn()
+    drawn = DrawnPath()
     drawn.move(points[0])
     for to in points[1:]:
         drawn.add(to)
@@ -125,7 +125,7 @@ def _polygon(get: Get, lengths: Lengths) -> Path:
     return path
 
 
-def _closed(drawn: Drawn, points: list[tuple[float, float]]) -> Path:
+def _closed(drawn: DrawnPath, points: list[tuple[float, float]]) -> Path:
     drawn.move(points[0])
     for to in points[1:]:
         drawn.add(to)

@@ -43,7 +43,7 @@ def declarations(text: str, unread: Unread, line: int = 0) -> Iterator[Declarati
             yield name if name.startswith("--") else name.lower(), plain, plain != value.strip()
 
 
-class Rules:
+class StyleRules:
     """The rules of all style sheets in a drawing."""
 
     def __init__(self, document: Document, unread: Unread) -> None:

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 from .document import Document
 from .lengths import LENGTH, NUMBER, Lengths, share
 from .paint import is_colour, is_paint
-from .sheets import Rules, declarations
+from .sheets import StyleRules, declarations
 from .unread import Unread
 
 Style: TypeAlias = Mapping[str, str]
@@ -94,7 +94,7 @@ class Cascade:
     """The styles of a drawing's elements."""
 
     def __init__(self, document: Document, unread: Unread) -> None:
-        self._rules, self._unread = Rules(document, unread), unread
+        self._rules, self._unread = StyleRules(document, unread), unread
         self._lines = document.lines
         self.root_size = 16.0
 

@@ -50,7 +50,7 @@ class Written:
 
 
 @dataclass(frozen=True)
-class New:
+class NewGlyph:
     """A glyph's new contours: ``contours[c][k]`` is contour c where ``drawings[k]`` says.
 
     With ``old``, the contours as they were, nothing but coordinates changes: the new ones have the same points, but for
@@ -91,23 +91,23 @@ def editable(source: Source) -> EditableSource:
     return source
 
 
-def of_results(source: Ufo, results: Iterable[GlyphResult]) -> Iterable[New]:
+def of_results(source: Ufo, results: Iterable[GlyphResult]) -> Iterable[NewGlyph]:
     """The new contours of a UFO's glyphs."""
     for result in results:
         contours = [[curve] for curve in stored_curves(result)]
-        yield New(result.outline.name, contours, source.drawings(result.outline.name))
+        yield NewGlyph(result.outline.name, contours, source.drawings(result.outline.name))
 
 
-def moved_points(source: EditableSource, old: Masters, new: Masters, redrawn: Collection[int]) -> New:
-    """The contours of a glyph of which points moved, in all masters; ``redrawn``: see :class:`New`."""
+def moved_points(source: EditableSource, old: Masters, new: Masters, redrawn: Collection[int]) -> NewGlyph:
+    """The contours of a glyph of which points moved, in all masters; ``redrawn``: see :class:`NewGlyph`."""
     places, drawings = new.stored_peaks, source.drawings(new.name)
     chosen = [places.index(each.place) for each in drawings]
     both = [[[Contour(c.points[k], c.degrees) for k in chosen] for c in each.contours] for each in (new, old)]
-    return New(new.name, both[0], drawings, both[1], redrawn)
+    return NewGlyph(new.name, both[0], drawings, both[1], redrawn)
 
 
 def write_back(
-    source: EditableSource, glyphs: Iterable[New], digits: int, *, copy: Path | None = None,
+    source: EditableSource, glyphs: Iterable[NewGlyph], digits: int, *, copy: Path | None = None,
     layer: str | None = None, dry: bool = False,
 ) -> Written:  # fmt: skip
     """Write new contours, rounded to ``digits`` decimals, into a source or a copy of it.
@@ -149,7 +149,7 @@ def _copied(source: EditableSource, folder: Path) -> Path:
     return root
 
 
-def _edited(source: EditableSource, glyphs: Iterable[New], digits: int, edit: Edit, dry: bool) -> Written:
+def _edited(source: EditableSource, glyphs: Iterable[NewGlyph], digits: int, edit: Edit, dry: bool) -> Written:
     found = Written()
     for new in glyphs:
         if new.name in source.others:
@@ -171,7 +171,7 @@ def _edited(source: EditableSource, glyphs: Iterable[New], digits: int, edit: Ed
 
 
 def _changes(
-    source: EditableSource, new: New, digits: int, edit: Edit
+    source: EditableSource, new: NewGlyph, digits: int, edit: Edit
 ) -> tuple[list[list[Node]], list[dict[int, list[Node]]], list[tuple[int, int, str]]]:
     """The nodes of contours in the first drawing; by drawing those that change, with their new ones; and numbers of
     contours that stay, in the file and in the outline, and why.

@@ -22,13 +22,13 @@ from ....types import FloatArray, IntArray
 from ..tables.font_glyphs import FINE, on_grid, put_string
 from ..tables.master_deltas import blend, order_of, regions_of
 from .programs import Command, Program
-from .stored import NEAR, OTHERWISE, REGIONS, Stored, matched
+from .stored import NEAR, OTHERWISE, REGIONS, StoredContours, matched
 
 STACK = 48
 """Most numbers on the stack of a ``CFF`` char string, by the format."""
 
 
-class CharStringContours(Stored):
+class CharStringContours(StoredContours):
     """The contours of a char string. Operators that draw what changes are written anew, with the subroutines that have
     them; all others stay.
 
@@ -57,7 +57,7 @@ class CharStringContours(Stored):
         super().__init__(*matched(glyph, stored))
 
     def masters(self, new: Masters) -> Masters:
-        """See :meth:`.Stored.masters`: coordinates and deltas are multiples of 1/65536."""
+        """See :meth:`.StoredContours.masters`: coordinates and deltas are multiples of 1/65536."""
         contours = list(new.contours)
         for c, steps in self._steps(new):
             index = self.owns[c]
@@ -68,7 +68,7 @@ class CharStringContours(Stored):
         return replace(new, contours=contours)
 
     def put(self, new: Masters) -> None:
-        """See :meth:`.Stored.put`. The new char string is not compiled, so that :func:`.programs.share` can read it.
+        """See :meth:`.StoredContours.put`. The new char string is not compiled: :func:`.programs.share` is to read it.
 
         Raises:
             GlyphsplineError: a point moves in a master whose region the char string has not.

@@ -23,7 +23,7 @@ from ..tables.variable_glyf import Gvar, placed_by_points, put_glyphs
 from .char_strings import CharStringContours, char_strings
 from .glyf_contours import GlyfContours
 from .programs import share
-from .stored import Stored
+from .stored import StoredContours
 
 OUTLINES = ("glyf", "loca", "gvar", "CFF ", "CFF2")
 BOUNDS = ("head", "hmtx", "vmtx", "hhea", "vhea", "maxp")
@@ -61,14 +61,14 @@ class FontEdit:
             self._gvar = Gvar(font) if "gvar" in font else None
             self._counted = placed_by_points(font)
 
-    def stored(self, glyph: Masters) -> Stored:
+    def stored(self, glyph: Masters) -> StoredContours:
         """The contours of a glyph, as it was read, in the font."""
         name, font = self._names[glyph.name], self.font
         if "glyf" not in font:
             return CharStringContours(font, name, glyph)
         record = font["glyf"][name]
         if record.isComposite() or not record.numberOfContours:
-            return Stored()
+            return StoredContours()
         found = GlyfContours(font, name, glyph, self._gvar)
         if name in self._counted:
             why = f"has points by which {self._counted[name]} is composed"

@@ -14,14 +14,14 @@ from fontTools.varLib.iup import iup_delta
 from ....outlines.masters import MasterContour, Masters, quadratics
 from ....types import BoolArray, FloatArray, IntArray
 from ..tables.master_deltas import rounded_deltas
-from ..tables.variable_glyf import PHANTOMS, Gvar, Record
-from .stored import NEAR, REGIONS, Stored, matched
+from ..tables.variable_glyf import PHANTOMS, GlyphRecord, Gvar
+from .stored import NEAR, REGIONS, StoredContours, matched
 
 Deltas = list[tuple[int, int] | None]
 """Of the points of a glyph in one variation; None where they are left to be inferred."""
 
 
-class GlyfContours(Stored):
+class GlyfContours(StoredContours):
     """The contours of a simple glyph.
 
     Args:
@@ -30,7 +30,7 @@ class GlyfContours(Stored):
 
     def __init__(self, font: TTFont, name: str, glyph: Masters, gvar: Gvar | None) -> None:
         self._simple, self._gid, self._gvar, self._glyph = font["glyf"][name], font.getGlyphID(name), gvar, glyph
-        self._record = record = Record.of(font, name, glyph, gvar)
+        self._record = record = GlyphRecord.of(font, name, glyph, gvar)
         self._points = record.outline(record.drawn)
         whole = [quadratics(self._points[:, a:b], record.on[a:b])[:2] for a, b in record.spans]
         self._singles = [singles(*each) for each in whole]
@@ -40,7 +40,7 @@ class GlyfContours(Stored):
         super().__init__(owns, why)
 
     def masters(self, new: Masters) -> Masters:
-        """See :meth:`.Stored.masters`: coordinates and deltas are whole numbers."""
+        """See :meth:`.StoredContours.masters`: coordinates and deltas are whole numbers."""
         (default, deltas), record = self._moved(new), self._record
         every = [*map(tuple, default.tolist()), *record.coordinates[-PHANTOMS:]]
         points = record.outline(record.in_masters(every, deltas))
@@ -50,7 +50,7 @@ class GlyfContours(Stored):
         return replace(new, contours=contours)
 
     def put(self, new: Masters) -> None:
-        """See :meth:`.Stored.put`."""
+        """See :meth:`.StoredContours.put`."""
         default, deltas = self._moved(new)
         self._simple.coordinates = GlyphCoordinates(default.tolist())
         if self._gvar is not None:

@@ -16,7 +16,7 @@ OTHERWISE = "is read otherwise than it is stored"
 REGIONS = "varies in regions that its masters have not"
 
 
-class Stored:
+class StoredContours:
     """The contours of a glyph that a font stores in its record; this one stores none.
 
     Attributes:

@@ -226,10 +226,8 @@ def findings(contours: ContourArrays, em: float) -> FloatArray:
 def _new_findings(
     source: ContourArrays, expected: FloatArray, curves: ContourArrays, places: Sequence[FloatArray], em: float
 ) -> BoolArray:
-    """(m,) the source's segments where curves have a finding of a kind that these segments have not.
-
-    Of curvature nothing is found in quadratics: it is looked at where the source has none.
-    """
+    """(m,) the source's segments where curves have a finding of a kind that these segments have not."""
+    # Of curvature nothing is found in quadratics: it is looked at where the source has none.
     wrong, counts = np.zeros(len(source.degrees), dtype=np.bool_), np.diff(source.offsets).tolist()
     quadratic = (np.add.reduceat(source.degrees == 2, source.offsets[:-1]) > 0).tolist()
     order = np.lexsort((expected[:, WHAT], expected[:, CONTOUR]))

@@ -65,7 +65,7 @@ def quadratic_contour(
 
     Args:
         stored: points (K, n, 2) as they are, and which are on the curve, where the source is these but for rounding.
-        corners, mixes: see :func:`fit_for_fonts`. stays: (m,) segments that are to stay as they are.
+        corners, mixes: see :func:`.fit.fit_for_fonts`. stays: (m,) segments that are to stay as they are.
 
     Returns:
         Also a bound of their distance from the source.

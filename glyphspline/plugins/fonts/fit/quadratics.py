@@ -86,11 +86,7 @@ def _rounded(given: Given, i: int, j: int, tolerance: float) -> Iterator[Rounded
 
 
 def _of_sections(sections: Sections, ends: list[int], first: int) -> Iterator[Rounded]:
-    """The quadratics of a run that is cut at joints: each time other tries of the sections that are wrong.
-
-    Args:
-        first: try of all.
-    """
+    """The quadratics of a run cut at joints, from try ``first`` on: each time other tries of those that are wrong."""
     given, tolerance, i, j = sections.given, sections.tolerance, ends[0], ends[-1]
     stored, samples, tries = given.stored, given.joints.samples, np.full(len(ends) - 1, first)
     ring, near = is_ring(given.cuts, i, j), 0.999 * tolerance

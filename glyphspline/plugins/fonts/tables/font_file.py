@@ -30,7 +30,7 @@ from ....extras import need
 from ....fitting.results import GlyphResult
 from ....outlines.outline import Outline
 from ....readers import Font, Source
-from ....readers.source import reason, reusing
+from ....readers.source import library_words, reusing
 from ..read_back import Held, Promise, held
 from .font_glyphs import (
     GRID,
@@ -293,7 +293,7 @@ def _empty_broken(strings: Any) -> None:
         try:
             strings[name].draw(NullPen())
         except Exception as error:  # as in readers
-            log.warning("glyph %r cannot be drawn: %s: left empty in the written font", name, reason(error))
+            log.warning("glyph %r cannot be drawn: %s: left empty in the written font", name, library_words(error))
             strings[name].setProgram(["endchar"])
 
 

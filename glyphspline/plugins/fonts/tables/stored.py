@@ -20,7 +20,7 @@ COUNTED = replace(THRESHOLDS, rounding=1e-9)
 """What is counted: rounding explains nothing, as a font of decimals has none, and handles are not as long in both."""
 
 
-class Stored(NamedTuple):
+class StoredFacts(NamedTuple):
     """The facts of some glyphs, each counted so that those of a font of cubics and of quadratics can be compared.
 
     Attributes:
@@ -39,7 +39,7 @@ class Stored(NamedTuple):
     bytes: int | None = None
 
 
-def stored_facts(source: Source, gids: Sequence[int]) -> Stored:
+def stored_facts(source: Source, gids: Sequence[int]) -> StoredFacts:
     """What a font stores of the glyphs with these indices; glyphs that cannot be read do not count."""
     from ....outlines.flaws.joints import WHAT, Segments, joint_findings  # imports the compiler
     from ....outlines.segments import all_cubics
@@ -63,7 +63,7 @@ def stored_facts(source: Source, gids: Sequence[int]) -> Stored:
         tables = source.tables().reader.tables
         own = [tables[tag] for tag in ("glyf", "loca", "CFF ", "CFF2") if tag in tables]
         size = sum(getattr(each, "origLength", each.length) for each in own) or None  # in WOFF, length is compressed
-    return Stored(curves, points, int(found[0]), None if quadratic else int(found[1]), size)
+    return StoredFacts(curves, points, int(found[0]), None if quadratic else int(found[1]), size)
 
 
 def implied(contours: ContourArrays) -> int:
@@ -78,12 +78,12 @@ def implied(contours: ContourArrays) -> int:
     return count
 
 
-def compared(before: Stored, after: Stored) -> str:
+def compared(before: StoredFacts, after: StoredFacts) -> str:
     """Both in words: what both have, and that there are more points if there are."""
     into_cubics = before.jumps is None and after.jumps is not None
     more = " (more: a cubic has two off the curve, a quadratic one)" if into_cubics else " (more)"
     return ", ".join(
         f"{name} {a:,} → {b:,}{more if name == 'points' and b > a else ''}"
-        for name, a, b in zip(Stored._fields, before, after, strict=True)
+        for name, a, b in zip(StoredFacts._fields, before, after, strict=True)
         if a is not None and b is not None
     )

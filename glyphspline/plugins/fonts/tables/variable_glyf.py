@@ -31,7 +31,7 @@ PHANTOMS = 4
 """Points after those of the contours, which encode the advance and the bearings."""
 
 
-class Record:
+class GlyphRecord:
     """A glyph of ``glyf`` in all masters, as it is stored.
 
     Attributes:
@@ -56,7 +56,7 @@ class Record:
         self.lefts = self.drawn[:, -PHANTOMS, 0].copy()
 
     @classmethod
-    def of(cls, font: TTFont, name: str, masters: Masters, gvar: Gvar | None) -> Record:
+    def of(cls, font: TTFont, name: str, masters: Masters, gvar: Gvar | None) -> GlyphRecord:
         """A glyph of a font; ``gvar``: None in a static one."""
         coordinates, control = font["glyf"]._getCoordinatesAndControls(name, font["hmtx"].metrics)
         given = gvar.variations(name) if gvar is not None else []

@@ -56,10 +56,7 @@ def common_cuts(one: Landmarks, other: Landmarks) -> tuple[FloatArray, FloatArra
 
 
 def _strong_pairs(one: Landmarks, other: Landmarks, costs: FloatArray) -> tuple[IntArray, float]:
-    """(p, 2) indices of strong landmarks that correspond, at least one pair, and the cost of the alignment, a landmark.
-
-    Without any, the nearest landmarks of all are a pair.
-    """
+    """(p, 2) indices of strong landmarks that correspond, or of the nearest two; the alignment's cost a landmark."""
     rows, columns = np.flatnonzero(one.weights >= STRONG), np.flatnonzero(other.weights >= STRONG)
     bars = one.weights[rows, None] + other.weights[columns]
     own = costs[np.ix_(rows, columns)]
