@@ -220,7 +220,8 @@ class Masters:
 
     def _outline(self, contours: Sequence[Contour], advance: float) -> Outline:
         of_font = Contours(contours, self.repeats)
-        return Outline(self.name, self.gid, self.unicodes, advance, of_font, self.metrics, self.notes)
+        head = self.name, self.gid, self.unicodes, advance
+        return Outline(*head, of_font, self.metrics, self.notes, unread=self.unread)
 
     def ticks(self, a: int) -> FloatArray:
         """Ascending normalised values of an axis between which every weight is linear: of regions, and its ends."""

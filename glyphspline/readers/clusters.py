@@ -6,15 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
-from unicodedata import category, decomposition, normalize
+from unicodedata import category, normalize
 
 import uharfbuzz as hb
 from uharfbuzz import BufferFlags
 
 from ..errors import GlyphsplineError
-
-SPACES = frozenset("\t\u00a0\u2000\u2001\u2002\u2003\u2004\u2005\u2006\u2007\u2008\u2009\u200a\u202f\u205f\u3000")
-"""What HarfBuzz makes of the space where a font lacks it."""
 
 UNSEEN = frozenset("\u00ad\u034f\u061c\u200b\u200c\u200d\u200e\u200f\u2060\ufe0e\ufe0f\ufeff")
 """Characters that need no glyph; a selector of emoji or text is as often copied along as meant."""
@@ -27,6 +24,9 @@ RADICALS, JAMO = range(0x2E80, 0x2FE0), (range(0x1100, 0x1200), range(0xA960, 0x
 
 LETTERS_OF_HANGUL = range(0x3131, 0x318F)
 
+LEADING, VOWELS = (*range(0x1100, 0x1160), *range(0xA960, 0xA97D)), (*range(0x1160, 0x11A8), *range(0xD7B0, 0xD7C7))
+TRAILING, SYLLABLES = (*range(0x11A8, 0x1200), *range(0xD7CB, 0xD7FC)), range(0xAC00, 0xD7A4)
+"""Parts of syllables of Hangul, those of old ones too, which no code point has as a whole, and whole ones."""
 
 ALONE = (
     BufferFlags.BOT | BufferFlags.EOT | BufferFlags.REMOVE_DEFAULT_IGNORABLES | BufferFlags.DO_NOT_INSERT_DOTTED_CIRCLE
@@ -46,6 +46,10 @@ class Repertoire(Protocol):
     @property
     def gids(self) -> dict[str, int]:
         """Glyph name to glyph index."""
+
+    @property
+    def mapper(self) -> Any:
+        """See :func:`mapper_of`."""
 
     def at_location(self, names: Sequence[str]) -> tuple[str, ...]:
         """The glyphs that stand for glyphs at the location."""
@@ -89,9 +93,10 @@ def _joins(before: str, character: str) -> bool:
         return category(before[0])[0] not in "ZM" or is_selector(character)
     if before[-1] == JOINER or (before[-1] in VIRAMAS and len(before) > 1):
         return kind == "L" or (before[-1] == JOINER and kind == "S")
-    if "\u1161" <= character <= "\u11ff":  # of Hangul
-        return len(normalize("NFC", before + character)) == 1
-    return is_regional(before) and is_regional(character)
+    last, code = ord(before[-1]), ord(character)
+    if code in TRAILING:  # behind a vowel that is not alone
+        return last in SYLLABLES[::28] or (last in VOWELS and len(before) > 1)
+    return (code in VOWELS and last in LEADING) or (is_regional(before) and is_regional(character))
 
 
 def is_tag(character: str) -> bool:
@@ -113,9 +118,9 @@ def glyphs_of(source: Repertoire, cluster: str) -> Shown:
     """How a source shows one of :func:`clusters` where nothing stands beside it.
 
     A font shows what HarfBuzz makes of it with the features that are on by default, at the font's location. Any other
-    source shows glyphs by its code points, as they are, composed or decomposed, after its rules for the location.
+    source shows what HarfBuzz makes of its characters, composed and decomposed, after its rules for the location.
     """
-    names = _shaped(source, cluster) if source.shaper is not None else _mapped(source, cluster)
+    names = _shaped(source, cluster)
     if names is not None and len(cluster) == 1:
         return Shown(names)
     if names is not None:
@@ -131,50 +136,37 @@ def _shaped(source: Repertoire, cluster: str) -> tuple[str, ...] | None:
 
     The glyph of a single character stays where HarfBuzz would put it together from others, or hide it.
     """
+    shaper = source.mapper if source.shaper is None else source.shaper
     buffer = hb.Buffer()
     buffer.add_codepoints(list(map(ord, cluster)))
     buffer.guess_segment_properties()
     buffer.language = "und"  # not the one that this process happens to run in
     buffer.flags = ALONE
     try:
-        hb.shape(source.shaper, buffer)
+        hb.shape(shaper, buffer)
     except MemoryError as error:
         words = f"HarfBuzz gives up on {cluster!r}: the font's tables grow it beyond measure"
         raise GlyphsplineError(words, font=str(source.path)) from error
     gids = [info.codepoint for info in buffer.glyph_infos]
     if len(gids) != 1 and len(cluster) == 1 and (name := source.cmap.get(ord(cluster))):
-        extents = source.shaper.get_glyph_extents(source.gids[name])
-        if not gids or (extents and extents.width and extents.height):
-            return (name,)
-    names, count = source.glyph_names, len(source.glyph_names)
-    if not all(0 < gid < count for gid in gids):
+        extents = source.shaper and shaper.get_glyph_extents(source.gids[name])
+        if not gids or source.shaper is None or (extents and extents.width and extents.height):
+            return source.at_location([name])
+    names, first = source.glyph_names, int(source.shaper is None)
+    if not all(0 < gid < len(names) + first for gid in gids):
         return None
-    return tuple([names[gid] for gid in (gids[::-1] if buffer.direction == "rtl" else gids)])
+    return source.at_location([names[gid - first] for gid in (gids[::-1] if buffer.direction == "rtl" else gids)])
 
 
-def _mapped(source: Repertoire, cluster: str) -> tuple[str, ...] | None:
-    """The glyphs of code points, composed as far as the source has them; None: some have none."""
-    spelled = "".join(_spelled(source, c) for c in (normalize("NFC", cluster) if len(cluster) > 1 else cluster))
-    names: list[str | None] = []
-    for k, character in enumerate(spelled):
-        if k and (name := source.variations.get(spelled[k - 1 : k + 1])):
-            names[-1] = name
-        elif name := source.cmap.get(ord(character)):
-            names.append(name)
-        elif character in SPACES:
-            names.append(source.cmap.get(0x20))
-        elif not (is_selector(character) or character in UNSEEN):
-            names.append(None)
-    return None if None in names else source.at_location(list(filter(None, names)))
-
-
-def _spelled(source: Repertoire, character: str) -> str:
-    """A character, or what it is composed of, as far as the source has it."""
-    pair = decomposition(character)  # of syllables of Hangul there is none
-    parts = normalize("NFD", character) if not pair or pair[0] == "<" else [chr(int(c, 16)) for c in pair.split()]
-    if ord(character) in source.cmap or list(parts) == [character]:
-        return character
-    return "".join(_spelled(source, part) for part in parts)
+def mapper_of(cmap: Mapping[int, str], variations: Mapping[str, str], gids: Mapping[str, int]) -> Any:
+    """HarfBuzz's font of characters alone, without tables. Its glyph 0 is what is missing, k + 1 is glyph k."""
+    functions, font = hb.FontFuncs(), hb.Font(hb.Face(b""))
+    functions.set_nominal_glyph_func(lambda font, code, data: gids.get(cmap.get(code, ""), -1) + 1)
+    functions.set_variation_glyph_func(
+        lambda font, code, selector, data: gids.get(variations.get(chr(code) + chr(selector), ""), -1) + 1
+    )
+    font.funcs = functions
+    return font
 
 
 def _has_variation(source: Repertoire, pair: str) -> bool:

@@ -18,6 +18,7 @@ from ..errors import FontError, GlyphsplineError, words_of
 from ..outlines.masters import DesignAxis, Masters
 from ..outlines.outline import FontMetrics, Outline
 from ..types import Head, counted
+from .clusters import mapper_of
 from .selection import Request, Selection, select
 
 OutlineOrError: TypeAlias = Outline | GlyphsplineError
@@ -242,6 +243,11 @@ class Source(ABC):
     def gids(self) -> dict[str, int]:
         """Glyph name to glyph index."""
         return {name: gid for gid, name in enumerate(self.glyph_names)}
+
+    @cached_property
+    def mapper(self) -> Any:
+        """HarfBuzz's font of the characters of a source without ``shaper``: see :func:`.clusters.mapper_of`."""
+        return mapper_of(self.cmap, self.variations, self.gids)
 
     @cached_property
     def unicodes(self) -> dict[str, tuple[int, ...]]:

@@ -58,6 +58,7 @@ UNDONE = [
     "dataset {variable} {place}/bad.ttf --no-fit --jobs 0 --out {new}",
     "text {gyosho} O龘 -o {new}.svg",
     "text {place}/broken.ttf AO -o {new}.svg",
+    "text {dejavu} e\U000e0100 -o {new}.svg",  # a variation that the font has not
     "text {gyosho} O --tolerance 0.001 --precision 2 -o {new}.svg",
     "atlas {gyosho} --text O龘 -o {new}.pdf",
     "atlas {place}/broken.ttf --all -o {new}.pdf",

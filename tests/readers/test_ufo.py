@@ -160,7 +160,7 @@ def test_a_glyph_outside_the_folder_is_refused(folder: Path) -> None:
 
 
 def test_folders_that_are_no_ufo(tmp_path: Path) -> None:
-    with pytest.raises(FontError, match="no UFO"):
+    with pytest.raises(FontError, match="nor a UFO"):
         open_source(tmp_path)
     (tmp_path / "metainfo.plist").write_text("nonsense")
     with pytest.raises(FontError, match="well-formed"):

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 
 import pytest
 from fontTools.colorLib.builder import buildCOLR
 from fontTools.fontBuilder import FontBuilder
+from fontTools.misc import sstruct
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from fontTools.ttLib import newTable
+from fontTools.ttLib.tables.BitmapGlyphMetrics import smallGlyphMetricsFormat
+from fontTools.ttLib.tables.E_B_L_C_ import sbitLineMetricsFormat
 from fontTools.ttLib.tables.S_V_G_ import SVGDocument
 from typer.testing import CliRunner
 
@@ -61,8 +65,31 @@ def layers(builder: FontBuilder) -> None:
     builder.font["COLR"] = buildCOLR({"A": [("B", 0xFFFF)]})
 
 
+def pixels(builder: FontBuilder) -> None:
+    """Bitmaps of A, which is full, and of the space, which is empty."""
+    line = "".join([f'<{name} value="0"/>' for name in sstruct.getformat(sbitLineMetricsFormat)[1]])
+    lines = "".join([f'<sbitLineMetrics direction="{each}">{line}</sbitLineMetrics>' for each in ("hori", "vert")])
+    size = {"colorRef": 0, "startGlyphIndex": 1, "endGlyphIndex": 2, "ppemX": 8, "ppemY": 8, "bitDepth": 1, "flags": 1}
+    sizes = "".join([f'<{name} value="{value}"/>' for name, value in size.items()])
+    small = "".join([f'<{name} value="8"/>' for name in sstruct.getformat(smallGlyphMetricsFormat)[1]])
+    kind, metrics = "ebdt_bitmap_format_1", f"<SmallGlyphMetrics>{small}</SmallGlyphMetrics>"
+    bitmaps = "".join(
+        [
+            f'<{kind} name="{name}">{metrics}<rawimagedata>{8 * row}</rawimagedata></{kind}>'
+            for name, row in (("space", "00"), ("A", "ff"))
+        ]
+    )
+    index = '<glyphLoc name="space"/><glyphLoc name="A"/>'
+    kind = "eblc_index_sub_table_1"
+    text = f"""<ttFont>
+    <EBDT><header version="2.0"/><strikedata index="0">{bitmaps}</strikedata></EBDT>
+    <EBLC><header version="2.0"/><strike index="0"><bitmapSizeTable>{lines}{sizes}</bitmapSizeTable>
+    <{kind} imageFormat="1" firstGlyphIndex="1" lastGlyphIndex="2">{index}</{kind}></strike></EBLC></ttFont>"""
+    builder.font.importXML(BytesIO(text.encode()))
+
+
 @pytest.mark.parametrize("cff", [False, True])
-@pytest.mark.parametrize(("add", "table"), [(drawings, "SVG"), (layers, "COLR")])
+@pytest.mark.parametrize(("add", "table"), [(drawings, "SVG"), (layers, "COLR"), (pixels, "EBDT")])
 def test_an_empty_glyph_says_which_table_its_ink_is_in(
     tmp_path: Path, add: Callable[[FontBuilder], None], table: str, cff: bool
 ) -> None:

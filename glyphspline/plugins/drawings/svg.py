@@ -99,14 +99,18 @@ class SvgDrawings(Source):
         return replace(found, gid=head.gid, unicodes=head.unicodes if EM in self.location else found.unicodes)
 
 
-def of_font(outline: Outline, em: float) -> Outline:
-    """A drawing as a glyph of a font of this em. One that hangs from its top edge stands on the baseline."""
+def of_font(outline: Outline, em: float, left: float) -> Outline:
+    """A drawing as a glyph of a font of this em.
+
+    It begins where its view box does, at ``left``. Where no more of it is above y = 0 than below, it stands on the
+    baseline, as icons do, whose origin is at the top or in the middle.
+    """
     scale, metrics = em / outline.metrics.units_per_em, outline.metrics
-    up = -metrics.descender if metrics.ascender <= 0 else 0.0
+    up = -metrics.descender if metrics.ascender <= -metrics.descender else 0.0
     points, degrees, offsets, starts = outline.arrays
-    arrays = ContourArrays((points + np.array([0.0, up])) * scale, degrees, offsets, starts)
+    arrays = ContourArrays((points + np.array([-left, up])) * scale, degrees, offsets, starts)
     return replace(
-        outline, advance=outline.advance * scale,
+        outline, advance=(outline.advance - left) * scale,
         contours=Contours(arrays, outline.repeats), snapped=outline.snapped * scale,
         metrics=FontMetrics(em, (metrics.ascender + up) * scale, (metrics.descender + up) * scale),
     )  # fmt: skip
@@ -155,7 +159,8 @@ def read_drawing(file: Path, strokes: bool = False, em: float | None = None) -> 
     unicodes = _unicodes(root.get("data-unicodes"), name, em is not None)
     notes = (*pen.notes, *unread.remarks)
     found = Outline(name, gid, unicodes, advance, pen.contours, metrics, notes, pen.snapped, unread.phrases)
-    return found if em is None else of_font(found, em)
+    left = 0.0 if root.get("data-units-per-em") else view_of(root)[0] * stretch_of(root)
+    return found if em is None else of_font(found, em, left)
 
 
 def draw_chain(points: Sequence[tuple[float, float]], degrees: Sequence[int], closed: bool, pen: Any) -> None:

@@ -8,9 +8,10 @@ masters it is interpolated by fontTools' model of variations, from which variabl
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from fontTools.designspaceLib import AxisDescriptor, DesignSpaceDocument, processRules
@@ -49,6 +50,7 @@ class Designspace(EditableSource):
     """
 
     format = kind = "designspace"
+    _unread: Mapping[str, tuple[str, ...]] = MappingProxyType({})  # of glyphs drawn themselves
 
     def __init__(self, path: Path, location: Location = None, file: Path | None = None) -> None:
         """Open the masters that ``file`` names, which is at ``path`` unless it was made of what is there."""
@@ -123,6 +125,8 @@ class Designspace(EditableSource):
         if name in self._components:
             return self._components[name]
         drawn = [(master, *_drawing(master, name)) for master in self._drawn_in(name)]
+        if above and not drawn:
+            raise GlyphsplineError(f"component {name!r} does not exist")
         try:
             model = VariationModel([item[0].at for item in drawn], axisOrder=[axis.tag for axis in self.axes])
         except VariationModelError as error:
@@ -140,7 +144,7 @@ class Designspace(EditableSource):
         found = replace(own, regions=stacked(distinct_regions(regions), len(self.axes)), metrics=self.metrics)
         weights = own.weights_at(found.peaks)  # (K, S)
         pen = ContourPen(masters=len(found), opens=True)
-        notes: list[str] = []
+        notes, unread = list[str](), list(self._unread.get(name, ()))
         for k, part in enumerate(drawn[0][1]):
             points = np.array([parts[k].points for _, parts, _ in drawn], dtype=np.float64)
             points = np.tensordot(weights, points, axes=1)  # (K, N, 2)
@@ -159,11 +163,11 @@ class Designspace(EditableSource):
                 if is_mirrored:  # as in :meth:`.Ufo._drawn`
                     drawn_so, repeats = drawn_so.reversed(), np.roll(repeats[::-1], 1)
                 pen.contour(drawn_so.points, drawn_so.degrees, repeats)
-            notes += child.notes
+            notes, unread = [*notes, *child.notes], [*unread, *child.unread]
         pen.finish()
         found = replace(
             found, contours=tuple(pen.stacks), advances=weights @ np.array([width for _, _, width in drawn]),
-            notes=(*pen.notes, *notes), repeats=pen.repeated,
+            notes=(*pen.notes, *notes), repeats=pen.repeated, unread=tuple(dict.fromkeys(unread)),
         )  # fmt: skip
         if above:  # components are asked for again
             self._components[name] = found, pen.own

@@ -6,18 +6,14 @@ import re
 import tempfile
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ...errors import FontError
 from ...extras import need
-from ...outlines.masters import Masters
-from ...outlines.outline import Outline
 from ...readers.open import UTF8, Reader
 from ...readers.source import Location
 from ...readers.ufo import folder_bytes
-from ...types import Head
 from .designspace import Designspace
 
 HINTS_KEY, ORDER_KEY = "com.schriftgestaltung.hints", "com.schriftgestaltung.fontMasterOrder"
@@ -47,12 +43,6 @@ class GlyphsFile(Designspace):
 
     def _bytes(self) -> Iterable[bytes]:
         return folder_bytes(self.path) if self.path.is_dir() else (self.path.read_bytes(),)
-
-    def _outline(self, head: Head) -> Outline:
-        return replace(super()._outline(head), unread=self._unread.get(head.name, ()))
-
-    def _masters(self, head: Head) -> Masters:
-        return replace(super()._masters(head), unread=self._unread.get(head.name, ()))
 
     def master_ids(self, ids: Sequence[str]) -> dict[Path, str]:
         """The id of the master that each UFO was made of; ``ids`` are those of the file, in its order."""

@@ -85,7 +85,7 @@ def text(
     remarks = [*remarks_on(layout), *sorted(drawn.notes, key=lambda note: f"{LEFT_OUT}: " not in note)]
     for line in () if run.quiet else shortened(remarks, SHOWN, "and {} remarks more"):
         say(line)
-    return bool(layout.missing or not drawn.complete)
+    return bool(layout.missing or layout.unvaried or not drawn.complete)
 
 
 def formats_of(files: Sequence[Path], name: str | None) -> Iterator[tuple[Path, str]]:
@@ -190,10 +190,14 @@ def length(name: str, text: str | None, em: float, look: Appearance) -> float | 
 
 
 def remarks_on(layout: Layout) -> Iterator[str]:
-    """Characters that no font has, and scripts whose letters join, if space is added between letters."""
+    """Notes of the layout, characters and variations that no font has, and scripts whose letters join, if spaced."""
+    yield from layout.notes
     if layout.missing:
         named = [f"{c} (U+{ord(c[0]):04X})" for c in layout.missing[:SHOWN]]
         yield f"no glyph for {listed(named, len(layout.missing))}: .notdef stands there"
+    if layout.unvaried:
+        named = [" ".join([f"U+{ord(character):04X}" for character in each]) for each in layout.unvaried[:SHOWN]]
+        yield f"no variation {listed(named, len(layout.unvaried))}: it stands there without the selector"
     if layout.letter_spacing:
         from fontTools.unicodedata import script_name
 

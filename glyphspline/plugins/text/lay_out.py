@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from math import pi
 from unicodedata import category
 
@@ -87,7 +88,7 @@ def layout(
     shapers, notes = _shapers(fonts, setting)
     check_features(setting.parsed_features, [source.shaper.face for source in fonts if source.shaper is not None])
     lines: list[tuple[Paragraph, int, Line]] = []
-    notes += _unvaried(text, fonts)
+    unvaried = _unvaried(text, fonts)
     missing: dict[str, None] = {}
     for start, stop in paragraphs(text):
         paragraph = Paragraph(text[start:stop], shapers, setting, start)
@@ -112,7 +113,7 @@ def layout(
     scale = np.array([shaper.scale for shaper in shapers])[of_font]
     return Layout(
         text, fonts, of_font, gid, cluster, number, origin, angles, advance, box, tuple(missing), scale, tuple(notes),
-        setting.vertical, letter_spacing=letter_spacing,
+        setting.vertical, letter_spacing=letter_spacing, unvaried=unvaried,
     )  # fmt: skip
 
 
@@ -156,12 +157,11 @@ def _shapers(fonts: Sequence[Source], setting: Setting) -> tuple[list[Shaper], l
     return shapers, notes
 
 
-def _unvaried(text: str, fonts: Sequence[Source]) -> Iterator[str]:
-    """Notes of variations that no font has."""
-    for cluster in dict.fromkeys(clusters(text) if any(map(is_selector, text)) else ()):
-        if is_selector(cluster[-1]) and all(glyphs_of(source, cluster).unvaried for source in fonts):
-            codes = " ".join([f"U+{ord(character):04X}" for character in cluster])
-            yield f"no variation {codes} in the font: it stands there without the selector"
+def _unvaried(text: str, fonts: Sequence[Source]) -> tuple[str, ...]:
+    """Bases with selectors of variations that no font has."""
+    chosen = dict.fromkeys(clusters(text) if any(map(is_selector, text)) else ())
+    found = [[glyphs_of(source, cluster).unvaried for source in fonts] for cluster in chosen]
+    return tuple(dict.fromkeys(chain.from_iterable(of_first for of_first, *rest in found if of_first and all(rest))))
 
 
 def _extents(font: Source, setting: Setting) -> tuple[float, float, float]:

@@ -48,6 +48,7 @@ class Layout:
         notes: remarks, such as that a source has no tables for shaping.
         vertical: whether lines are columns.
         unusable: glyphs that are not read: font and index, and why.
+        unvaried: bases with selectors of variations that no font has: they stand there without the selector.
         letter_spacing: what of ``advance`` is space behind each letter.
     """
 
@@ -67,6 +68,7 @@ class Layout:
     vertical: bool = False
     unusable: Mapping[tuple[int, int], str] = field(default_factory=dict)
     letter_spacing: float = 0.0
+    unvaried: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         said = f"{self.text[:24]}…" if len(self.text) > 25 else self.text

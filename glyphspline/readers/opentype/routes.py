@@ -63,10 +63,19 @@ class Face:
                 or (face.has_color_paint and face.glyph_has_color_paint(gid))
             ),
             "CBDT": lambda: face.has_color_png and len(font.get_glyph_color_png(gid).data),
+            "EBDT": lambda: self._has_pixels(gid),
         }
         found["sbix"] = found["CBDT"]
-        tables = [tag for tag in self._elsewhere if tag in found and found[tag]()]
+        tables = [tag for tag in self._elsewhere if found[tag]()]
         return tuple(f"its ink is in the {tag.strip()} table, which is not read" for tag in tables)
+
+    def _has_pixels(self, gid: int) -> bool:
+        """Whether a glyph has a bitmap of one colour that is not empty, which HarfBuzz does not read."""
+        with suppress(Exception):  # a broken table shows nothing
+            name, strikes = self._tables.getGlyphName(gid), self._tables["EBDT"].strikeData
+            bitmaps = [strike[name] for strike in strikes if name in strike]
+            return any(any(getattr(bitmap, "imageData", b"\1")) for bitmap in bitmaps)  # or it is made of others
+        return False
 
     @cached_property
     def _elsewhere(self) -> list[str]:

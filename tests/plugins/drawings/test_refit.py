@@ -232,6 +232,28 @@ def test_icons_become_a_font_of_a_proper_em(asked: int | None, tmp_path: Path) -
     assert np.abs(radii - em * 10 / 24).max() <= em / 1000
 
 
+@pytest.mark.parametrize("box", ["-2 -2 28 28", "-12 -12 24 24", "3 -24 24 24"])
+def test_an_icon_fills_its_advance_wherever_its_view_box_begins(box: str, tmp_path: Path) -> None:
+    """Names that tables of fonts have no letters for, as Chinese ones, are replaced there alone."""
+    left, top, size, _ = map(float, box.split())
+    rectangle = f'<rect x="{left + 1}" y="{top + 3}" width="{size - 2}" height="{size - 3}"/>'
+    (tmp_path / "icons").mkdir()
+    (tmp_path / "icons" / "心形—.svg").write_text(
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="{box}">{rectangle}</svg>'
+    )
+    for suffix in ("ttf", "otf"):
+        found = refit(tmp_path / "icons", "--format", suffix, "--out", tmp_path / suffix, "--units-per-em", 1000)
+        assert found.exit_code == 0, found.output
+        assert "U+E000 心形—" in found.output
+        font = gs.open_font(next((tmp_path / suffix).glob(f"*.{suffix}")))
+        assert font.cmap == {0xE000: "uniE000"}
+        outline = font.outline(font.cmap[0xE000])
+        points = outline.contours[0].points * size / 1000
+        assert outline.advance == 1000
+        assert np.abs(points.min(axis=0) - [1, 0]).max() < size / 1000
+        assert np.abs(points.max(axis=0) - [size - 1, size - 3]).max() < size / 1000
+
+
 def test_an_em_is_for_drawings_that_become_a_font(tmp_path: Path) -> None:
     font = str(FONTS / "kouzan-gyosho.ttf")
     words = ["refit", font, "--format", "ttf", "--text", "O", "--units-per-em", "500", "--out", str(tmp_path / "o")]

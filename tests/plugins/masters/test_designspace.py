@@ -409,6 +409,14 @@ width = 600;
 unicode = 72;
 },
 {
+glyphname = Hbar;
+layers = ({ layerId = m01; shapes = ({ ref = H; }, { pos = (300,0); ref = I; }); width = 600; });
+},
+{
+glyphname = Ibar;
+layers = ({ layerId = m01; shapes = ({ ref = I; }, { ref = gone; }); width = 600; });
+},
+{
 glyphname = _corner.serif;
 layers = ({
 layerId = m01;
@@ -435,6 +443,9 @@ def test_corner_components_are_applied_and_caps_are_named(tmp_path: Path) -> Non
     assert corners(source, "I") == [[0, 700], *serif, [100, 0], [100, 700]]
     assert [source.outline(name).unread for name in "HI"] == [("cap components",), ()]
     assert [source.masters(name).unread for name in "HI"] == [("cap components",), ()]
+    assert source.outline("Hbar").unread == ("cap components",)
+    with pytest.raises(GlyphsplineError, match=r"'Ibar': component 'gone' does not exist"):
+        source.outline("Ibar")
     new = [NewGlyph(name, [source.outline(name).contours], source.drawings(name)) for name in "I"]
     found = write_back(source, new, 0, dry=True)
     assert not found.names

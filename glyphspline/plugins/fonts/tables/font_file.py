@@ -30,6 +30,7 @@ from ....extras import need
 from ....fitting.results import GlyphResult
 from ....outlines.outline import Outline
 from ....readers import Font, Source
+from ....readers.opentype.font import unused
 from ....readers.source import library_words, reusing
 from ..read_back import Held, Promise, held
 from .font_glyphs import (
@@ -345,8 +346,21 @@ class _Rebuilt:
 
 def stored_names(source: Source, font: TTFont) -> dict[str, str]:
     """Names of the source's glyphs to those in the font, whose order is the source's if that is a font's."""
-    order = font.getGlyphOrder() if isinstance(source, Font) else source.glyph_names
-    return dict(zip(source.glyph_names, order, strict=True))
+    if isinstance(source, Font):
+        return dict(zip(source.glyph_names, font.getGlyphOrder(), strict=True))
+    return storable_names(source)
+
+
+def storable_names(source: Source) -> dict[str, str]:
+    """Names of a source's glyphs, .notdef first, to those that tables of fonts have letters and room for."""
+    names = dict.fromkeys([".notdef", *source.glyph_names])
+    found, taken = dict[str, str](), set(names)
+    for number, name in enumerate(names):
+        code = min(source.unicodes.get(name, ()), default=None)
+        new = f"glyph{number:05}" if code is None else f"uni{code:04X}" if code < 0x10000 else f"u{code:X}"
+        fits = len(name) < 256 and all(letter <= "\xff" for letter in name)
+        found[name] = name if fits else unused(new, taken)
+    return found
 
 
 def set_bearings(font: TTFont, name: str, drawn: Drawn, outline: Outline) -> None:
@@ -420,11 +434,10 @@ def new_tables(source: Source) -> TTFont:
         raise FontError(f"an em of {given:g} units: a font has 16 to 16384", font=str(source.path))
     builder = FontBuilder(em, isTTF=True)
     builder.setupHead(unitsPerEm=em, created=DATE, modified=DATE)
-    names = list(source.glyph_names)
-    if names[:1] != [".notdef"]:
-        names = [".notdef", *(name for name in names if name != ".notdef")]
+    stored = storable_names(source)
+    names = list(stored.values())
     builder.setupGlyphOrder(names)
-    builder.setupCharacterMap(dict(source.cmap))
+    builder.setupCharacterMap({code: stored[name] for code, name in source.cmap.items()})
     ascender, descender = round(source.metrics.ascender), round(source.metrics.descender)
     builder.setupHorizontalMetrics(dict.fromkeys(names, (0, 0)))
     builder.setupHorizontalHeader(ascent=ascender, descent=descender)
