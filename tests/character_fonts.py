@@ -12,6 +12,7 @@ from fontTools.ttLib.tables._c_m_a_p import CmapSubtable
 from fontTools.ufoLib import UFOWriter
 
 import glyphspline as gs
+from glyphspline.readers import Source
 
 HEAVY = "conditionset heavy { wght 700 900; } heavy; variation rvrn heavy { sub dollar by dollar.heavy; } rvrn;"
 """A feature: at and above 700 another glyph stands for the dollar."""
@@ -67,7 +68,7 @@ def font_of(
     return gs.open_font(path, location=location)
 
 
-def ufo_of(path: Path, cmap: dict[int, str], *others: str, lib: dict[str, Any] | None = None) -> gs.Source:
+def ufo_of(path: Path, cmap: dict[int, str], *others: str, lib: dict[str, Any] | None = None) -> Source:
     """A UFO of boxes."""
 
     class Glyph:

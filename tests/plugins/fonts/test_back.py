@@ -128,7 +128,9 @@ def test_in_place_only_points_of_fitted_contours_change(tmp_path: Path) -> None:
                 radii = np.hypot(*(contour.at(np.arange(0, len(contour), 0.1)) - (300, 250)).T)
                 assert np.abs(radii - 250).max() < 1.6  # the source is rounded to whole units
     words = r"My.ufo: new outlines of 2 glyphs, C2 \(--continuity g2: fewer points\): points (\d+) → (\d+); nothing.*"
-    points = [int(number) for number in re.fullmatch(words, remarks[0]).groups()]
+    found = re.fullmatch(words, remarks[0])
+    assert found
+    points = [int(number) for number in found.groups()]
     counts = [sum(part[f"glyphs/{name}.glif"].count(b"<point ") for name in ("o", "oi")) for part in (before, after)]
     assert points[1] < points[0] <= counts[0]
     assert points[1] - points[0] == counts[1] - counts[0]

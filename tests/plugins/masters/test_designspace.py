@@ -373,6 +373,7 @@ def test_a_glyphs_package_is_its_file_in_parts(tmp_path: Path) -> None:
         (package / "glyphs" / f"{glyph['glyphname']}.glyph").write_text(plist.dumps(glyph))
     assert find_fonts([str(package)]) == [package]
     source = open_source(package)
+    assert isinstance(source, Designspace)
     assert source.glyph_names == whole.glyph_names
     assert corners(source, "o") == corners(whole, "o")
     before = source.sha256

@@ -25,7 +25,7 @@ from glyphspline.plugins.text.bidi import ISOLATES, REMOVED, embedding_levels, v
 from glyphspline.plugins.text.paragraph import clusters
 from glyphspline.plugins.text.placed import Layout
 from glyphspline.plugins.text.scripts import scripts_of, upright_in_columns
-from glyphspline.plugins.text.setting import parsed_features
+from glyphspline.readers.characters import parsed_features
 from tests.places import DEJAVU, ROOT
 from tests.text_fonts import advance, text_font
 

@@ -237,11 +237,11 @@ def test_a_line_of_text_is_drawn_with_the_options_of_the_glyph(client: TestClien
     path = re.search(r'<path id="g1-[0-9a-f]+" d="([^"]*)"', found["svg"])
     name = gs.open_font(FONTS / "kouzan-gyosho.ttf").cmap[ord("A")]
     assert path
-    read = [
+    line, glyph = (
         np.array([piece.bpoints() for piece in parse_path(data)])
         for data in (path[1], client.post("/api/glyph", json=STATE | {"glyph": name}).json()["result"])
-    ]
-    np.testing.assert_allclose(*read, atol=0.08)  # rounded to 0.1 and to 0.01
+    )
+    np.testing.assert_allclose(line, glyph, atol=0.08)  # rounded to 0.1 and to 0.01
     assert "error" in client.post("/api/text", json=STATE | {"text": "a" * 501}).json()
     assert "at least one" in client.post("/api/text", json=STATE | {"text": ""}).json()["error"]
 
