@@ -43,7 +43,7 @@ from glyphspline.interpolation.kernels.passes import (
     one_pass,
     set_weights,
 )  # fmt: skip
-from glyphspline.interpolation.kernels.search import Curve, Room, settle
+from glyphspline.interpolation.kernels.search import SearchedCurve, SearchRoom, settle
 from glyphspline.interpolation.method import TIE_DISTANCE
 from glyphspline.types import FloatArray, IntArray
 
@@ -130,8 +130,13 @@ def answer_passes(
     """
     size = 2 * PAD + WHOLE
     steps, controls, following, vertices = np.ones(size), np.zeros((2, size)), np.zeros((2, size)), np.zeros((2, size))
-    blocks, S, T, curve = np.zeros(BLOCK), np.zeros(SCRATCH), np.zeros(2 * AXIS), Curve(controls, vertices, steps)
-    room = Room(np.zeros((4, 2)), np.zeros((2, 4)), np.zeros(2), np.zeros(WORK))
+    blocks, S, T, curve = (
+        np.zeros(BLOCK),
+        np.zeros(SCRATCH),
+        np.zeros(2 * AXIS),
+        SearchedCurve(controls, vertices, steps),
+    )
+    room = SearchRoom(np.zeros((4, 2)), np.zeros((2, 4)), np.zeros(2), np.zeros(WORK))
     for k in range(P.shape[0]):
         for i in range(6):
             steps[PAD - 3 + i] = h[k, i]

@@ -45,7 +45,7 @@ from .kernels.passes import (
     holds,
     rises,
 )  # fmt: skip
-from .kernels.search import FINE, GIVEN_UP, Curve, Room, look_again
+from .kernels.search import FINE, GIVEN_UP, SearchedCurve, SearchRoom, look_again
 from .method import RELATIVE_TOLERANCE, Rule
 from .polygon import LARGEST, SAME_VERTEX, SMALLEST, Polygons
 from .result import Found
@@ -375,8 +375,8 @@ class State:
         if fails >= WILD:
             largest[q], counts[1, q] = np.inf, counts[1, q] + 1
             return
-        curve = Curve(self.P, self.p, self.h)
-        room = Room(np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(d), np.empty(WORK))
+        curve = SearchedCurve(self.P, self.p, self.h)
+        room = SearchRoom(np.empty((4, d)), np.empty((min(d, 4), 4)), np.empty(d), np.empty(WORK))
         self.x[j], squared, outcome = look_again(curve, i, side, self.x[j], self.low[j], self.high[j], fails, room)
         largest[q] = max(largest[q], self.free[j] * squared)
         counts[:, q] += [outcome != FINE, outcome == GIVEN_UP]

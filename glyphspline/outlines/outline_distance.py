@@ -64,7 +64,7 @@ BOUND, SEEN, X, Y, SIDE, CONTOUR, NEAR_X, NEAR_Y = range(COLUMNS)
 SIDE (0 old, 1 new), its contour, and the nearest point of the other outline. Nothing seen: SIDE is -1."""
 
 
-class Chains(NamedTuple):
+class Searched(NamedTuple):
     """The contours of one outline, ready to be searched.
 
     Attributes:
@@ -83,7 +83,7 @@ class Chains(NamedTuple):
     groups: FloatArray
 
 
-def chains_of(contours: ContourArrays) -> Chains:
+def chains_of(contours: ContourArrays) -> Searched:
     """The chains of an outline that is not empty."""
     cubics, offsets = all_cubics(contours), contours.offsets
     boxes = np.concatenate([cubics.min(axis=1), cubics.max(axis=1)], axis=1)
@@ -95,7 +95,7 @@ def chains_of(contours: ContourArrays) -> Chains:
     at, beside = np.arange(len(cubics)), np.empty((len(cubics), 2), dtype=np.int64)
     first, last = offsets[owners], offsets[owners + 1] - 1
     beside[:, 0], beside[:, 1] = np.where(at == first, last, at - 1), np.where(at == last, first, at + 1)
-    return Chains(cubics, offsets, owners, beside, bends, boxes, np.concatenate([low, high], axis=1))
+    return Searched(cubics, offsets, owners, beside, bends, boxes, np.concatenate([low, high], axis=1))
 
 
 @inlined
@@ -117,7 +117,7 @@ def reached(cubics: FloatArray, s: int, guess: float, x: float, y: float) -> tup
 
 @compiled
 def nearest_on(
-    chains: Chains, s: int, x: float, y: float, best: float, miss: Miss, places: FloatArray
+    chains: Searched, s: int, x: float, y: float, best: float, miss: Miss, places: FloatArray
 ) -> tuple[float, float]:
     """The parameter of segment s that is nearest a point, and its distance, if it is less than ``best`` by more than it
     may be missed; or else NaN, and ``best``.
@@ -158,7 +158,7 @@ def nearest_on(
 
 @compiled
 def nearest_of_outline(
-    chains: Chains, x: float, y: float, s: int, z: float, miss: Miss, places: FloatArray
+    chains: Searched, x: float, y: float, s: int, z: float, miss: Miss, places: FloatArray
 ) -> tuple[int, float, float]:
     """The segment and parameter of an outline nearest a point, and its distance.
 
@@ -189,7 +189,7 @@ def nearest_of_outline(
     return segment, at, best
 
 
-def outline_distance(old: Chains, new: Chains, unit: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
+def outline_distance(old: Searched, new: Searched, unit: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
     """The distance of two outlines, (COLUMNS,); and what :func:`distance` gives.
 
     Args:
@@ -202,8 +202,9 @@ def outline_distance(old: Chains, new: Chains, unit: float, tolerance: float) ->
 
 @compiled
 def look(
-    chains: Chains, x: float, y: float, s: int, z: float, misses: tuple[Miss, Miss], places: FloatArray, row: FloatArray
-) -> tuple[int, float, bool]:
+    chains: Searched, x: float, y: float, s: int, z: float, misses: tuple[Miss, Miss], places: FloatArray,
+    row: FloatArray,
+) -> tuple[int, float, bool]:  # fmt: skip
     """The segment and parameter of an outline nearest a point, and whether that is farther than all that was seen:
     it is in the row then.
 
@@ -229,7 +230,7 @@ def enough(seen: float, least: float, tolerance: float) -> float:
 
 
 @compiled
-def distance(old: Chains, new: Chains, least: float, tolerance: float, row: FloatArray) -> FloatArray:
+def distance(old: Searched, new: Searched, least: float, tolerance: float, row: FloatArray) -> FloatArray:
     """The distance of two outlines, into a row of COLUMNS that are 0.
 
     Args:
@@ -303,7 +304,7 @@ def distance(old: Chains, new: Chains, least: float, tolerance: float, row: Floa
 
 @compiled
 def section_bound(
-    cubics: FloatArray, i: int, low: float, high: float, other: Chains, begin: Place, end: Place, limit: float,
+    cubics: FloatArray, i: int, low: float, high: float, other: Searched, begin: Place, end: Place, limit: float,
     sections: FloatArray,
 ) -> float:  # fmt: skip
     """Bound of the distance of the points of a section of a segment from an outline.

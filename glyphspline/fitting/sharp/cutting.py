@@ -21,7 +21,7 @@ from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
 from .cubics import fit_between, is_straight
 from .pieces import Pieces, joined, part, source_pieces, turned
-from .settings import Settings
+from .settings import SharpSettings
 from .spline_search import fit_spline
 
 PART, WHOLE = 1, 2
@@ -103,7 +103,7 @@ def prepared(
     return chain, kept, flipped, joints
 
 
-def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: Settings) -> tuple[Chains, Pieces]:
+def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: SharpSettings) -> tuple[Chains, Pieces]:
     """All contours as they are cut, and lines and arcs that follow them.
 
     Pieces that are farther off than ``settings.near`` become the source's own segments.
@@ -146,7 +146,7 @@ def _replaced(pieces: Pieces, which: BoolArray, other: Callable[[Pieces], Pieces
     return joined(found, pieces.vertices.shape[1]), np.concatenate(same)
 
 
-def fit_contour(joints: Joints, pieces: Pieces, ways: IntArray, settings: Settings) -> list[Pieces]:
+def fit_contour(joints: Joints, pieces: Pieces, ways: IntArray, settings: SharpSettings) -> list[Pieces]:
     """A contour's lines and arcs, in the direction in which it is fitted: splines where what is simplest is not near
     enough.
 
@@ -269,7 +269,7 @@ def stretches(around: Joints, joints: IntArray, ways: IntArray, count: int) -> i
 
 
 def refit(
-    chains: Chains, pieces: Pieces, poor: BoolArray, shares: FloatArray, settings: Settings
+    chains: Chains, pieces: Pieces, poor: BoolArray, shares: FloatArray, settings: SharpSettings
 ) -> tuple[Pieces, IntArray]:
     """Pieces with others in the place of poor ones: fitted more closely, or else the source's own segments.
 
@@ -282,7 +282,7 @@ def refit(
     return _replaced(pieces, poor, lambda piece: _closer(chains, piece, shares, settings))
 
 
-def _closer(chains: Chains, piece: Pieces, shares: FloatArray, settings: Settings) -> Pieces:
+def _closer(chains: Chains, piece: Pieces, shares: FloatArray, settings: SharpSettings) -> Pieces:
     """A piece fitted within the first of the shares that a spline is found for, or else the source's own segments."""
     own, way = chains.of(piece), -1 if chains.flipped[piece.contour[0]] else 1
     begin = turned(piece, chains.offsets, chains.flipped)

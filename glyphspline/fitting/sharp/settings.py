@@ -9,7 +9,7 @@ LONG_LINE = 0.02
 """Share of the em from which straight lines stay lines."""
 
 
-class Settings(NamedTuple):
+class SharpSettings(NamedTuple):
     """How contours are cut and fitted.
 
     Attributes:
@@ -47,11 +47,11 @@ class Settings(NamedTuple):
 
 EFFORTS = {
     "fast": partial(
-        Settings, chain_rounds=4, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4,
+        SharpSettings, chain_rounds=4, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4,
         removals=0.3, passes=1, dear=0.5, removal_rounds=2, reach=3,
     ),
     "best": partial(
-        Settings, chain_rounds=6, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3,
+        SharpSettings, chain_rounds=6, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3,
         removals=0.7, passes=2, dear=1.5, removal_rounds=8, reach=4,
     ),
 }  # fmt: skip

@@ -21,7 +21,7 @@ from .corners import Joints
 from .cubics import fit_cubic
 from .feet import Samples, places_beside
 from .pieces import Pieces
-from .settings import Settings
+from .settings import SharpSettings
 from .spline_curve import FREE, tips_of
 from .vertex_steps import move_vertices
 from .vertices import insert_vertices, place_vertices, removal_costs, samples_between, without
@@ -64,7 +64,7 @@ class TriedCurve(NamedTuple):
         return len(self.errors)
 
 
-def fit_spline(joints: Joints, piece: Pieces, near: float, settings: Settings, given: bool) -> Pieces:
+def fit_spline(joints: Joints, piece: Pieces, near: float, settings: SharpSettings, given: bool) -> Pieces:
     """One spline, of as few spans as the search finds, in the place of a piece; with an infinite error there is none.
 
     Args:
@@ -111,7 +111,7 @@ class Search:
     samples: Samples
     closed: int
     near: float
-    settings: Settings
+    settings: SharpSettings
     most: int
 
     @property

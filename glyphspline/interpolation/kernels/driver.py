@@ -18,7 +18,7 @@ from ..result import Found
 from .footpoint import WORK
 from .lemma2 import vertex_interval
 from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, one_pass, set_weights
-from .search import Curve, Room, settle
+from .search import SearchedCurve, SearchRoom, settle
 
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
 """Status codes. A refused polygon is checked again in Python to build the error message."""
@@ -92,7 +92,7 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
     h, blocks, natural, e, T = borrowed(rows)
     p, P, N, ends, b = borrowed(tables)
     S, c, work = borrowed(scratch)
-    room = Room(b, c, e, work)
+    room = SearchRoom(b, c, e, work)
     for k in range(k0, k1):
         first, last, shift, row = offsets[k], offsets[k + 1], k if closed else 0, found.whole[k]
         n = row[KEPT]
@@ -118,7 +118,9 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
                 squared, left = one_pass(now, N, p, part, S, T, i, behind)
                 largest = max(largest, squared)
                 if left > 0 or variant == 0:
-                    squared, searched, uncertified = settle(Curve(now, p, h), N, part, i, behind, variant == 0, room)
+                    squared, searched, uncertified = settle(
+                        SearchedCurve(now, p, h), N, part, i, behind, variant == 0, room
+                    )
                     largest = max(largest, squared)
                     row[SEARCHES] += searched
                     row[UNCERTIFIED] += uncertified

@@ -32,7 +32,7 @@ CUT = 0.125
 DEEPEST = 6
 
 
-class Curve(NamedTuple):
+class SearchedCurve(NamedTuple):
     """Control points and vertices (d, …), and knot intervals: h[j] is the one after knot j."""
 
     P: FloatArray
@@ -40,7 +40,7 @@ class Curve(NamedTuple):
     h: FloatArray
 
 
-class Room(NamedTuple):
+class SearchRoom(NamedTuple):
     """Scratch for a second look: (4, d), (min(d, 4), 4); (d,), the curve's point less the vertex; and ``WORK``."""
 
     b: FloatArray
@@ -51,7 +51,7 @@ class Room(NamedTuple):
 
 @compiled
 def settle(
-    curve: Curve, N: FloatArray, blocks: FloatArray, start: int, stop: int, wide: bool, room: Room
+    curve: SearchedCurve, N: FloatArray, blocks: FloatArray, start: int, stop: int, wide: bool, room: SearchRoom
 ) -> tuple[float, int, int]:
     """What :func:`.passes.one_pass` has left; the largest squared error, inf if one is not finite, and counts.
 
@@ -80,7 +80,7 @@ def settle(
 
 @compiled
 def look_again(
-    curve: Curve, i: int, side: float, x: float, low: float, high: float, fails: float, room: Room
+    curve: SearchedCurve, i: int, side: float, x: float, low: float, high: float, fails: float, room: SearchRoom
 ) -> tuple[float, float, int]:
     """The nearest point of an interval about knot i: its parameter, its squared distance, and what was done.
 

@@ -15,7 +15,7 @@ from ...arrays import grown
 from ...compiled import compiled
 from ...curves.cubics import length
 from ...outlines.contour_arrays import NO_CONTOURS, ContourArrays
-from ...outlines.outline_distance import STACK, Chains, nearest_of_outline
+from ...outlines.outline_distance import STACK, Searched, nearest_of_outline
 from ...outlines.regions import ink_difference
 from ...outlines.winding import MOST_HALVINGS, winding
 from ...types import FloatArray
@@ -46,7 +46,7 @@ def changed_ink(old: ContourArrays, new: ContourArrays, deepest: FloatArray, tol
 
 
 @compiled
-def deepest_point(old: Chains, new: Chains, boxes: FloatArray, tolerance: float, found: FloatArray) -> bool:
+def deepest_point(old: Searched, new: Searched, boxes: FloatArray, tolerance: float, found: FloatArray) -> bool:
     """The depth of a point of changed ink, and the point, into an array (3,) of zeros, if it is beyond the tolerance.
 
     Args:

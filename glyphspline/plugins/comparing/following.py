@@ -13,7 +13,7 @@ import numpy as np
 from ...compiled import compiled
 from ...curves.integrals import area
 from ...curves.pairing import SHARPNESS, pair_instances
-from ...outlines.outline_distance import Chains
+from ...outlines.outline_distance import Searched
 from ...types import FloatArray, IntArray
 
 BACK = 0.1
@@ -21,7 +21,7 @@ BACK = 0.1
 ends, or one that is a little off."""
 
 
-def unfollowed(old: Chains, new: Chains, nearest: FloatArray, tolerance: float) -> FloatArray:
+def unfollowed(old: Searched, new: Searched, nearest: FloatArray, tolerance: float) -> FloatArray:
     """(k, 4) boxes around the contours of both outlines that do not run beside one of the other within the tolerance.
 
     Contours belong together in pairs that run in one direction; or that run against each other, all of them.
@@ -48,7 +48,7 @@ def boxes_of(cubics: FloatArray, offsets: IntArray) -> FloatArray:
 
 
 @compiled
-def areas(chains: Chains) -> float:
+def areas(chains: Searched) -> float:
     """The sum of the contours' signed areas."""
     total = 0.0
     for c in range(len(chains.offsets) - 1):

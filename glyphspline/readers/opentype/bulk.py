@@ -88,7 +88,7 @@ CALLBACKS = _point, _point, _quadratic, _cubic
 """What HarfBuzz calls for an operation of each kind. There is none for closing a path, as every path is closed."""
 
 
-class Drawing:
+class Recording:
     """The buffer as the callbacks of plain Python get it. HarfBuzz's bindings swallow what these raise: it is kept."""
 
     def __init__(self, buffer: FloatArray) -> None:
@@ -304,7 +304,7 @@ class BulkReader:
         self._path, self._face, self._size = path, face, size
         self._buffer = np.zeros(SIZE)
         self._buffer[CAPACITY] = SIZE
-        self._pointer, self._drawing = _capsule(self._buffer.ctypes.data), Drawing(self._buffer)
+        self._pointer, self._drawing = _capsule(self._buffer.ctypes.data), Recording(self._buffer)
         self._lock = Lock()
 
     def outlines(self, heads: Sequence[Head], metrics: FontMetrics) -> list[OutlineOrError]:

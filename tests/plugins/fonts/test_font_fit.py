@@ -30,7 +30,7 @@ from glyphspline.plugins.fonts.fit.points import (
     stored_points,
     with_cut_lines,
 )
-from glyphspline.plugins.fonts.fit.run_nodes import Guide, Run
+from glyphspline.plugins.fonts.fit.run_nodes import CubicRun, Guide
 from glyphspline.plugins.fonts.tables.font_file import write_font
 from glyphspline.types import FloatArray
 from tests.fitting.test_sharp import true_distance
@@ -128,7 +128,7 @@ def test_jumps_of_curvature_that_may_stay_move_nothing() -> None:
     joints = find_joints(source[None], np.full(4, 3), settings.near, settings.angle, settings.line, settings.c2)
     most = max(end_jump(source[s - 1], source[s], 1000.0) for s in range(4))
     for slack in (most + 0.01, 0.0):
-        run = Run(
+        run = CubicRun(
             source.copy(), np.zeros(4, np.bool_), np.empty(5, np.int64), np.empty((5, 2)), np.arange(5),
             np.zeros(4, np.int64), np.ones(5), np.full(5, slack), True,
         )  # fmt: skip

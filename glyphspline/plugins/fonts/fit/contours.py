@@ -25,11 +25,11 @@ from ....arrays import put
 from ....compiled import compiled
 from ....curves.nearest import near_places
 from ....fitting.first_good import first_good
-from ....fitting.sharp.settings import Settings
+from ....fitting.sharp.settings import SharpSettings
 from ....types import BoolArray, FloatArray, IntArray
-from .gates import Limits, jumps_of, mixed, on_grid
+from .gates import FitLimits, jumps_of, mixed, on_grid
 from .meeting import let_meet
-from .run_source import Source, Stretch
+from .run_source import RunSource, Stretch
 from .tries import KEPT, Tries
 
 ATTEMPTS = 20
@@ -54,8 +54,8 @@ class Fitted(NamedTuple):
 
 
 def fit_contour(
-    cubics: FloatArray, degrees: IntArray, tries: IntArray, settings: Settings, limits: Limits, fresh: BoolArray,
-    last: Fitted | None,
+    cubics: FloatArray, degrees: IntArray, tries: IntArray, settings: SharpSettings, limits: FitLimits,
+    fresh: BoolArray, last: Fitted | None,
 ) -> Fitted:  # fmt: skip
     """A contour (K, m, 4, 2) fitted from its own first joint on, if that is still a node, or else the next one.
 
@@ -66,7 +66,7 @@ def fit_contour(
     m = len(degrees)
     if m == 1 or ((tries >= KEPT).all() and not (degrees == 2).any()):
         return unchanged(cubics, degrees)
-    k, source = Source.of(cubics, degrees, settings, limits)
+    k, source = RunSource.of(cubics, degrees, settings, limits)
     if source is None:
         return unchanged(cubics, degrees)
     old = None
@@ -127,7 +127,7 @@ def turned_back(
 
 
 def fit_runs(
-    source: Source, tries: IntArray, fresh: BoolArray, last: tuple[FloatArray, IntArray] | None
+    source: RunSource, tries: IntArray, fresh: BoolArray, last: tuple[FloatArray, IntArray] | None
 ) -> tuple[FloatArray, IntArray, BoolArray]:  # fmt: skip
     """The runs of a contour.
 

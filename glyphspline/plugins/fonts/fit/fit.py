@@ -16,7 +16,7 @@ from ....fitting.ladders import SHARP_TRIES
 from ....fitting.measures import distance_columns
 from ....fitting.options import Options
 from ....fitting.results import ConvertedContours, not_fitted
-from ....fitting.sharp.settings import EFFORTS, LONG_LINE, Settings
+from ....fitting.sharp.settings import EFFORTS, LONG_LINE, SharpSettings
 from ....outlines.contour_arrays import ContourArrays, joined, lines_and_cubics, offsets_of
 from ....outlines.flaws.bends import bend_findings
 from ....outlines.flaws.joints import CONTOUR, PLACE, WHAT, Segments, joint_findings, rows, segment_findings
@@ -24,7 +24,7 @@ from ....outlines.flaws.kinds import JUMP, KINDS, KINK, LUMP, THRESHOLDS
 from ....outlines.segments import all_cubics
 from ....types import BoolArray, FloatArray, IntArray
 from .contours import Fitted, fit_contour
-from .gates import CORNER, Limits, mixed
+from .gates import CORNER, FitLimits, mixed
 from .gates import KINK as KINKED
 from .tries import KEPT
 
@@ -99,7 +99,7 @@ def fit_for_fonts(
         near=scale * share * tolerance, angle=float(np.radians(options.corner_angle)), line=LONG_LINE * em * scale,
         c2=False, margin=0.0, residual=0.0,
     )  # fmt: skip
-    limits = Limits(settings.near, em * scale, settings.chain_rounds, corners, mixes)
+    limits = FitLimits(settings.near, em * scale, settings.chain_rounds, corners, mixes)
     wanted = FontSources(sources, settings, limits, options.precision, tolerance, em)
     return first_good(wanted.fits(), lambda fit: (int((fit.again != fit.tries).sum()),)).curves
 
@@ -120,8 +120,8 @@ class FontSources(NamedTuple):
     """
 
     sources: Sequence[ContourArrays]
-    settings: Settings
-    limits: Limits
+    settings: SharpSettings
+    limits: FitLimits
     precision: int
     tolerance: float
     em: float

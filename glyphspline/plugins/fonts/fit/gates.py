@@ -27,7 +27,7 @@ DISTANCE, TURNS, ALL = range(3)
 """Gates: the certified distance; that and turns; those, jumps of curvature, extrema and handles."""
 
 
-class Limits(NamedTuple):
+class FitLimits(NamedTuple):
     """How runs are fitted, in steps of the grid: the tolerance, the em, and the rounds of a cubic's fit.
 
     Attributes:

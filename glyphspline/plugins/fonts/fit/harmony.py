@@ -20,7 +20,7 @@ from ....fitting.sharp.cubics import solve
 from ....fitting.sharp.nearness import add_samples, feet, reweight
 from ....intrinsics import borrowed, keep_alive
 from ....types import FloatArray, IntArray
-from .run_nodes import FIXED, GuideArrays, Run, RunArrays, align, handles_at, moved, set_kinds, set_moves, sides
+from .run_nodes import FIXED, CubicRun, GuideArrays, RunArrays, align, handles_at, moved, set_kinds, set_moves, sides
 
 ROUNDS = 7
 """Gauss-Newton steps. More change lengths by less than the grid's step."""
@@ -62,7 +62,7 @@ def end_jumps(P: FloatArray, em: float) -> FloatArray:
 @compiled
 def harmonise(arrays: RunArrays, guide: GuideArrays, tolerance: float, em: float) -> None:
     """Move the cubics of a :class:`.run_nodes.Run` until curvatures meet, along a :class:`.run_nodes.Guide`."""
-    run, (samples, joints, corner, upright, arriving, leaving) = borrowed(Run(*arrays)), borrowed(guide)
+    run, (samples, joints, corner, upright, arriving, leaving) = borrowed(CubicRun(*arrays)), borrowed(guide)
     r, P = len(run.P), run.P
     nodes = r if run.closed else r + 1
     set_kinds(run, corner, upright, arriving, leaving)
@@ -121,7 +121,7 @@ def harmonise(arrays: RunArrays, guide: GuideArrays, tolerance: float, em: float
 
 
 @compiled
-def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, number: IntArray, share: float) -> None:
+def add_joint(run: CubicRun, s: int, em: float, A: FloatArray, g: FloatArray, number: IntArray, share: float) -> None:
     """The equation of the joint after cubic s: its two curvatures are to be the same, unless one has no handle."""
     r = len(run.P)
     q = (s + 1) % r
@@ -187,7 +187,7 @@ def add_joint(run: Run, s: int, em: float, A: FloatArray, g: FloatArray, number:
 
 
 @compiled
-def damp(run: Run, A: FloatArray, number: IntArray, tolerance: float) -> None:
+def damp(run: CubicRun, A: FloatArray, number: IntArray, tolerance: float) -> None:
     """Small steps where the equations leave a choice; unknowns that move nothing stay 0."""
     for k, at in enumerate(number):
         if at < 0:

@@ -21,7 +21,7 @@ from ....fitting.sharp.nearness import own_form, reduced, squares_of_two
 from ....intrinsics import borrowed, keep_alive
 from ....types import FloatArray, IntArray
 from .harmony import end_jump
-from .run_nodes import AXIS, FIXED, FREE, HELD, Run, RunArrays, sides
+from .run_nodes import AXIS, FIXED, FREE, HELD, CubicRun, RunArrays, sides
 
 SWEEPS = 4
 """How often all nodes are visited; few move in the fourth."""
@@ -61,7 +61,7 @@ def round_run(arrays: RunArrays, samples: FloatArray, first: IntArray, tolerance
     Args:
         samples, first: of :class:`.run_nodes.Guide`.
     """
-    run = borrowed(Run(*arrays))
+    run = borrowed(CubicRun(*arrays))
     r, P = len(run.P), run.P
     owned = Measure(P.copy(), np.empty((r, 8, 9)), np.zeros(r), np.empty((2, 4, 5)), np.empty(2))
     measure = borrowed(owned)
@@ -106,7 +106,7 @@ def turn_cost(ax: float, ay: float, bx: float, by: float) -> float:
 
 
 @compiled
-def end_cost(run: Run, k: int) -> float:
+def end_cost(run: CubicRun, k: int) -> float:
     """What the turn from the tangent at the first or last node of a run costs, but at a corner."""
     if run.kind[k] == FIXED:
         return 0.0
@@ -127,7 +127,7 @@ def joint_cost(P: FloatArray, s: int, q: int, ease: float, slack: float, em: flo
 
 @inlined
 def cost_at(
-    run: Run, k: int, before: int, after: int, measure: Measure, em: float, least: float, seen: FloatArray,
+    run: CubicRun, k: int, before: int, after: int, measure: Measure, em: float, least: float, seen: FloatArray,
     parts: FloatArray,
 ) -> float:  # fmt: skip
     """What changes with the points at a node: distances of the cubics there, and joints up to the next nodes.
@@ -173,7 +173,7 @@ def cost_at(
 
 
 @compiled
-def put_points(run: Run, before: int, after: int, points: FloatArray, k: int) -> None:
+def put_points(run: CubicRun, before: int, after: int, points: FloatArray, k: int) -> None:
     """Set a node and its handles: the one before it, the node, and the one after it."""
     P, moves = run.P, run.kind[k] >= AXIS
     for axis in range(2):
@@ -261,7 +261,7 @@ def set_place(found: FloatArray, code: int, place: FloatArray) -> None:
 
 @compiled
 def improve(
-    run: Run, k: int, measure: Measure, em: float, room: FloatArray, best: FloatArray, seen: FloatArray,
+    run: CubicRun, k: int, measure: Measure, em: float, room: FloatArray, best: FloatArray, seen: FloatArray,
     parts: FloatArray,
 ) -> bool:  # fmt: skip
     """Give a node and its handles the cheapest of the neighbouring places on the grid; whether they changed.

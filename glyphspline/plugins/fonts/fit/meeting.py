@@ -15,7 +15,7 @@ from .gates import ALL, DISTANCE, TURNS, crosses_handles, joint_turn, on_grid
 from .harmony import end_jump, end_jumps, harmonise
 from .lattice import round_run
 from .meeting_places import meet
-from .run_nodes import Run
+from .run_nodes import CubicRun
 from .run_source import Stretch
 from .tries import KEPT
 
@@ -167,12 +167,12 @@ class Meeting:
             return None
         return None if self.refused(run, 0.999, ALL if way.wide else TURNS)[loose].any() else new
 
-    def refused(self, run: Run, share: float, gates: int) -> BoolArray:
+    def refused(self, run: CubicRun, share: float, gates: int) -> BoolArray:
         """(r,) the cubics of a run that a gate refuses."""
         none = np.zeros(len(self.own.degrees), np.bool_)
         return self.own.refused(run.P[None], self.places, self.extrema, run.held, share, gates, none)
 
-    def moved_together(self, run: Run, jumps: list[float], q: int, held: bool) -> bool:
+    def moved_together(self, run: CubicRun, jumps: list[float], q: int, held: bool) -> bool:
         """Move the cubics beside node q together and round them; False where that is given up. See :meth:`better`."""
         guide, limits, r = self.own.guides[0], self.own.limits, len(jumps)
         for s in range(0 if self.own.closed else 1, r):

@@ -16,7 +16,7 @@ from ....curves.cubics import hidden_extrema, length
 from ....fitting.sharp.nearness import own_form, reduced, squares_of_two
 from ....types import FloatArray, IntArray
 from .harmony import FLAT, end_curvature
-from .run_nodes import Run, RunArrays
+from .run_nodes import CubicRun, RunArrays
 
 MET, NO_KINK, FAREST = 0.095, np.radians(0.45), 0.5
 """Jump of curvature and turn of a joint at which curvatures are made to meet; and the mean squared distance, in
@@ -45,7 +45,7 @@ class MoveCost(NamedTuple):
 
 @compiled
 def side_places(
-    run: Run, s: int, end: int, move: Move, of: MoveCost, far: tuple[float, float, float, bool], em: float,
+    run: CubicRun, s: int, end: int, move: Move, of: MoveCost, far: tuple[float, float, float, bool], em: float,
     dearest: float, found: FloatArray,
 ) -> int:  # fmt: skip
     """Places of the two inner points of cubic s when the node at one end of it moves.
@@ -127,7 +127,7 @@ def least_square(points: FloatArray, exact: FloatArray, form: FloatArray, rest: 
 
 
 @inlined
-def beyond_end(run: Run, s: int, end: int) -> tuple[float, float, float, bool]:
+def beyond_end(run: CubicRun, s: int, end: int) -> tuple[float, float, float, bool]:
     """What cubic s of a run meets at an end, see :func:`side_places`."""
     r = len(run.P)
     q = s + 1 if end else s - 1
@@ -150,7 +150,7 @@ def meet(
     Returns:
         Whether there are such places.
     """
-    run = Run(*arrays)
+    run = CubicRun(*arrays)
     r, P = len(run.P), run.P
     a, q = (k - 1) % r, k % r
     nx, ny, exact, forms, rest = P[q, 0, 0], P[q, 0, 1], np.empty((2, 4, 2)), np.empty((2, 8, 9)), np.empty(2)

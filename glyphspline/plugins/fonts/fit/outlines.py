@@ -10,7 +10,7 @@ import numpy as np
 from ....compiled import compiled
 from ....curves.cubics import directions, length
 from ....fitting.sharp.corners import NO_HANDLE, SHARP, SMOOTH_KINK, Joints, find_joints, is_roundings, turn_between
-from ....fitting.sharp.settings import Settings
+from ....fitting.sharp.settings import SharpSettings
 from ....types import BoolArray, FloatArray, IntArray
 from .chains import LEAST, OWN, REACH, SLACK
 from .gates import CORNER, KINK, mixed
@@ -83,8 +83,8 @@ class Given:
 
 
 def read_contour(
-    cubics: FloatArray, degrees: IntArray, settings: Settings, tolerance: float, stored: Stored, corners: FloatArray,
-    mixes: FloatArray,
+    cubics: FloatArray, degrees: IntArray, settings: SharpSettings, tolerance: float, stored: Stored,
+    corners: FloatArray, mixes: FloatArray,
 ) -> Given:  # fmt: skip
     """A contour, its joints, and the tangents at these: at the ends of lines that are met smoothly, the lines'."""
     joints = find_joints(cubics, degrees, settings.near, settings.angle, settings.line, settings.c2)

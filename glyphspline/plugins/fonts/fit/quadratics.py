@@ -25,7 +25,7 @@ import numpy as np
 from ....curves.cubics import directions, length
 from ....fitting.first_good import first_good
 from ....fitting.sharp.corners import NO_HANDLE
-from ....fitting.sharp.settings import Settings
+from ....fitting.sharp.settings import SharpSettings
 from ....types import BoolArray, FloatArray, IntArray
 from .chains import relax
 from .grid import EXPLICIT, aim, round_quads
@@ -154,8 +154,8 @@ def far_off(a: FloatArray, b: FloatArray) -> float:
 
 
 def fit_contour(
-    cubics: FloatArray, degrees: IntArray, settings: Settings, tolerance: float, stored: Stored, corners: FloatArray,
-    mixes: FloatArray,
+    cubics: FloatArray, degrees: IntArray, settings: SharpSettings, tolerance: float, stored: Stored,
+    corners: FloatArray, mixes: FloatArray,
 ) -> Points:  # fmt: skip
     """The points of a contour (K, m, 4, 2), whether they are on the curve, and how far it moved, certified.
 

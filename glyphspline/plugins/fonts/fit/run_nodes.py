@@ -34,7 +34,7 @@ class Guide(NamedTuple):
     leaving: FloatArray
 
 
-class Run(NamedTuple):
+class CubicRun(NamedTuple):
     """Cubics from one cut of a contour to the next.
 
     Attributes:
@@ -66,7 +66,7 @@ RunArrays: TypeAlias = tuple[
 
 
 @compiled
-def set_kinds(run: Run, corner: BoolArray, upright: BoolArray, arriving: FloatArray, leaving: FloatArray) -> None:
+def set_kinds(run: CubicRun, corner: BoolArray, upright: BoolArray, arriving: FloatArray, leaving: FloatArray) -> None:
     """What the nodes of a run may do, and their tangents: beside cubics that are held, those of these."""
     r = len(run.P)
     for s in range(r + 1):
@@ -84,7 +84,7 @@ def set_kinds(run: Run, corner: BoolArray, upright: BoolArray, arriving: FloatAr
 
 
 @compiled
-def align(run: Run) -> None:
+def align(run: CubicRun) -> None:
     """Put the handles of a run on the tangents of their nodes, at the length they have; but not at corners."""
     r = len(run.P)
     for s in range(r):
@@ -102,7 +102,7 @@ def align(run: Run) -> None:
 
 
 @compiled
-def set_moves(run: Run, i: int, end: int, s: int, J: FloatArray, row: int, at: int) -> None:
+def set_moves(run: CubicRun, i: int, end: int, s: int, J: FloatArray, row: int, at: int) -> None:
     """How node i moves the two points at one end of cubic s, by its unknowns.
 
     These are: along the tangent, across it, its turn, and the lengths of the handles after and before the node. At a
@@ -133,7 +133,7 @@ def set_moves(run: Run, i: int, end: int, s: int, J: FloatArray, row: int, at: i
 
 
 @inlined
-def sides(run: Run, k: int) -> tuple[int, int]:
+def sides(run: CubicRun, k: int) -> tuple[int, int]:
     """The cubics after and before a node that move; -1 where there is none."""
     r = len(run.P)
     after, before = k if k < r else -1, k - 1 if k > 0 else (r - 1 if run.closed else -1)
@@ -141,7 +141,7 @@ def sides(run: Run, k: int) -> tuple[int, int]:
 
 
 @inlined
-def handles_at(run: Run, k: int) -> tuple[float, float]:
+def handles_at(run: CubicRun, k: int) -> tuple[float, float]:
     """The lengths of the handles after and before a node; one at an end of the run counts for both."""
     r, P = len(run.P), run.P
     after, before = k if k < r else -1, k - 1 if k > 0 else (r - 1 if run.closed else -1)
@@ -151,7 +151,7 @@ def handles_at(run: Run, k: int) -> tuple[float, float]:
 
 
 @compiled
-def moved(run: Run, g: FloatArray, number: IntArray, tolerance: float) -> bool:
+def moved(run: CubicRun, g: FloatArray, number: IntArray, tolerance: float) -> bool:
     """Move all nodes by their unknowns; whether anything moved by more than a tenth of a step of the grid."""
     r, P = len(run.P), run.P
     most = 0.0

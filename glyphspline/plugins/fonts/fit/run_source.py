@@ -11,11 +11,11 @@ from ....arrays import put
 from ....compiled import compiled
 from ....curves.cubics import directions, hidden_extrema
 from ....fitting.sharp.corners import NO_HANDLE, Joints, find_joints
-from ....fitting.sharp.settings import Settings
+from ....fitting.sharp.settings import SharpSettings
 from ....outlines.segments import farthest_joint
 from ....types import BoolArray, FloatArray, IntArray
-from .gates import Limits, mixed, refused
-from .run_nodes import Guide, Run
+from .gates import FitLimits, mixed, refused
+from .run_nodes import CubicRun, Guide
 
 UPRIGHT = np.sin(np.radians(1.5))
 """Sine of the angle to an axis up to which the tangent at an extremum is the axis."""
@@ -106,7 +106,7 @@ def read_source(
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
+class RunSource:
     """A contour of m segments in K masters, which begins at a cut, if it has any.
 
     Attributes:
@@ -116,7 +116,7 @@ class Source:
         outline: (m V, 4, 2), looks: (m M, 4, 2) the contour at the corners and in the mixes of the limits.
     """
 
-    limits: Limits
+    limits: FitLimits
     cubics: FloatArray
     degrees: IntArray
     joints: Joints
@@ -129,8 +129,8 @@ class Source:
 
     @classmethod
     def of(
-        cls, cubics: FloatArray, degrees: IntArray, settings: Settings, limits: Limits
-    ) -> tuple[int, Source | None]:  # fmt: skip
+        cls, cubics: FloatArray, degrees: IntArray, settings: SharpSettings, limits: FitLimits
+    ) -> tuple[int, RunSource | None]:  # fmt: skip
         """The joint of a contour at which the source begins, and this; None: no run is to be fitted."""
         how = settings.near, settings.angle, settings.line, settings.c2
         k, fitted, arrays = read_source(cubics, degrees, how, limits.corners, limits.mixes)
@@ -146,7 +146,7 @@ class Stretch:
         guides: what a run follows in each master.
     """
 
-    source: Source
+    source: RunSource
     i: int
     closed: bool
     cubics: FloatArray
@@ -154,7 +154,7 @@ class Stretch:
     guides: tuple[Guide, ...]
 
     @classmethod
-    def of(cls, source: Source, i: int, j: int, closed: bool) -> Stretch:
+    def of(cls, source: RunSource, i: int, j: int, closed: bool) -> Stretch:
         """The stretch between two joints."""
         own, joints = slice(i, j + 1), source.joints
         first, corner, upright = joints.first[own], joints.corner[own], source.upright[:, own]
@@ -163,7 +163,7 @@ class Stretch:
         return cls(source, i, closed, source.cubics[:, i:j].copy(), source.degrees[i:j], guides)
 
     @property
-    def limits(self) -> Limits:
+    def limits(self) -> FitLimits:
         """Of the fit."""
         return self.source.limits
 
@@ -173,10 +173,12 @@ class Stretch:
         found: IntArray = np.ascontiguousarray(before[:, 1:] - before[:, :-1])
         return found
 
-    def run(self, P: FloatArray, held: BoolArray, places: IntArray, extrema: IntArray, ease: FloatArray) -> Run:
+    def run(self, P: FloatArray, held: BoolArray, places: IntArray, extrema: IntArray, ease: FloatArray) -> CubicRun:
         """A run of cubics (r, 4, 2) in one master, of which no jump may stay."""
         n = len(places)
-        return Run(P, held, np.empty(n, np.int64), np.empty((n, 2)), places, extrema, ease, np.zeros(n), self.closed)
+        return CubicRun(
+            P, held, np.empty(n, np.int64), np.empty((n, 2)), places, extrema, ease, np.zeros(n), self.closed
+        )
 
     def refused(
         self, P: FloatArray, places: IntArray, extrema: IntArray, held: BoolArray, share: float, gates: int,
