@@ -96,7 +96,7 @@ def fit_spline(joints: Joints, piece: Pieces, near: float, settings: SharpSettin
     best = first_good(search.curves(first, guess, wanted), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
         return none
-    return search.piece(piece, best if begun else search.thinned(best, least))
+    return search.piece(piece, search.thinned(best, max(least, begun)) if best.spans > begun else best)
 
 
 @dataclass(frozen=True)
