@@ -96,7 +96,11 @@ def fit_spline(joints: Joints, piece: Pieces, near: float, settings: SharpSettin
     best = first_good(search.curves(first, guess, wanted), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
         return none
-    return search.piece(piece, search.thinned(best, max(least, begun)) if best.spans > begun else best)
+    found = search.piece(piece, search.thinned(best, max(least, begun)) if best.spans > begun else best)
+    if begun and found.spans[0] > begun:  # more were put between old ones than a new guess may take
+        other = fit_spline(joints, piece, near, settings, given=False)
+        return other if other.errors[0] <= near and other.spans[0] < found.spans[0] else found
+    return found
 
 
 @dataclass(frozen=True)
