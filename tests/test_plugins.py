@@ -141,6 +141,7 @@ def test_the_pipelines_tests_pass_without_any_plugin(tmp_path: Path) -> None:
     options = ["-q", "-p", "no:cacheprovider", "-m", "not long and not needs", "--rootdir", str(tmp_path)]
     options += ["--deselect", "tests/runs/test_pool.py::test_workers_with_other_code_are_an_error"]  # of links
     options += ["--deselect", "tests/runs/test_run_files.py::test_a_drawing_that_came_out_empty_says_why"]
+    options += ["--deselect", "tests/fitting/test_traces.py::test_a_noisy_circle_is_a_circle[g2]"]
     done = run(environment, "-m", "pytest", *options, *chosen)
     assert done.returncode == 0, done.stdout[-3000:]
 

@@ -34,7 +34,8 @@ def are_open(contours: ContourArrays) -> BoolArray:
     found[likely] = (points[starts[likely] + 1] == points[starts[likely + 1] - 1]).all(axis=1)
     for c in np.flatnonzero(found).tolist():
         own, kinds = points[starts[c] : starts[c + 1]], degrees[offsets[c] : offsets[c + 1]]
-        found[c] = np.array_equal(kinds, kinds[::-1]) and np.array_equal(own[1:], own[:0:-1]) and np.isfinite(own).all()
+        back = np.array_equal(kinds, kinds[::-1]) and np.array_equal(own[1:], own[:0:-1])
+        found[c] = back and np.isfinite(own).all() and (own != own[0]).any()
     return found
 
 
