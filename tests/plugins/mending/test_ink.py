@@ -192,7 +192,7 @@ def test_moves_that_would_change_ink_are_left_and_say_so(planted: Path) -> None:
     left = {(each.glyph, each.kind): each.why for each in found.left}
     for name in ("overlap_turned", "half_overlap"):
         assert left[name, "direction"] == "would change the ink"
-    assert left["tiny_counter", "short"] == "would bring a new finding: open contour"
+    assert left["tiny_counter", "short"] == "would change the ink"
     assert left["slanted", "slanted"] in {f"would change the ink of {name}, a composite" for name in ON_BARS}
     assert "slanted" not in found.changed
     assert {"dot_turned", "island_turned"} <= {*found.changed}
