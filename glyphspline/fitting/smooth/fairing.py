@@ -175,10 +175,13 @@ def fair(
             outline, _ = in_master(contours, trial.which[i], v)
             P, normals = controls[a:b, 2 * v : 2 * v + 2].copy(), np.zeros((n, 2))
             points, moving = moved[a:b, 2 * v : 2 * v + 2].copy(), np.zeros(n, dtype=np.bool_)
-            least = np.where(again[a:b, v], limits[a:b, v], 0.0)
+            least = np.zeros(n)
+            for j in range(n):
+                if again[a + j, v]:
+                    least[j] = limits[a + j, v]
             for j in range(n):
                 if again[a + j, v] or again[a + (j - 1) % n, v]:
-                    points[j] = trial.points[a + j, 2 * v : 2 * v + 2]
+                    points[j, 0], points[j, 1] = trial.points[a + j, 2 * v], trial.points[a + j, 2 * v + 1]
                 if least[j] > 0 and least[j - 1] > 0 and not held[a + j]:
                     _, _, _, dx, dy = on_spline(P, own, intervals, parameters[a + j])
                     speed = np.sqrt(dx * dx + dy * dy)
@@ -195,6 +198,9 @@ def fair(
                     span, x, y, _, _ = on_spline(P, own, intervals, parameters[a + j])
                     if moving[span]:
                         points[j, 0], points[j, 1] = x, y
-            if np.isfinite(points).all():  # or else the curve has no speed somewhere, as where a contour collapses
+            total = 0.0
+            for j in range(n):
+                total += points[j, 0] + points[j, 1]
+            if np.isfinite(total):  # or else the curve has no speed somewhere, as where a contour collapses
                 for j in range(n):
                     moved[a + j, 2 * v], moved[a + j, 2 * v + 1] = points[j, 0], points[j, 1]
