@@ -273,12 +273,9 @@
   GS.handles = (pieces) => pieces.flatMap((p) =>
     (p.length === 2 ? [] : p.length === 3 ? [[p[0], p[1]], [p[2], p[1]]] : [[p[0], p[1]], [p[3], p[2]]]));
 
-  /** The same drawn, with a dot at each end. */
-  GS.handleLines = (pieces) => {
-    const handles = GS.handles(pieces);
-    return [GS.svg("path", { class: "handle-lines", d: handles.map(([a, b]) => GS.join(a, b)).join("") }),
-      GS.dots(handles.map(([, end]) => end), "handle-ends")];
-  };
+  /** The same as one path, and with a dot at each end. */
+  GS.handlePath = (pieces, name) => GS.svg("path", { class: name, d: GS.handles(pieces).map(([a, b]) => GS.join(a, b)).join("") });
+  GS.handleLines = (pieces) => [GS.handlePath(pieces, "handle-lines"), GS.dots(GS.handles(pieces).map(([, end]) => end), "handle-ends")];
 
   /** The curvature, in 1/unit, of a full tooth: most teeth in view are shorter. */
   GS.scaleNear = (contours, em, [x, y, half]) => {

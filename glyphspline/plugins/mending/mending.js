@@ -35,11 +35,10 @@
     const combs = scale > 0 ? [[old, "source-comb"], [now, "comb"]].map(([of, name]) => GS.comb(of, em, scale, { name, gain })) : [];
     const same = old.flat(2).length === now.flat(2).length ? old.flat(2).map((p, k) => [p, now.flat(2)[k]]) : [];
     const moves = same.filter(([a, b]) => Math.hypot(a[0] - b[0], a[1] - b[1]) > 1e-3);
-    const handles = (of, name) => GS.svg("path", { class: name, d: GS.handles(of.flat()).map(([a, b]) => GS.join(a, b)).join("") });
     GS.showNear(picture, x, y, half);
     picture.replaceChildren(
       GS.svg("path", { class: "source", d: GS.pathData(old) }), GS.svg("path", { class: "result", d: GS.pathData(now) }), ...combs,
-      handles(old, "handle-before"), handles(now, "handle-after"), GS.dots([own[row.segment][0]], "mark"),
+      GS.handlePath(old.flat(), "handle-before"), GS.handlePath(now.flat(), "handle-after"), GS.dots([own[row.segment][0]], "mark"),
       GS.svg("path", { class: "moves", d: moves.map(([a, b]) => GS.join(a, b)).join("") }),
       GS.dots(moves.map(([a]) => a), "before"), GS.dots(moves.map(([, b]) => b), "after"),
     );
