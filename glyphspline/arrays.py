@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .compiled import compiled
+from .compiled import compiled, inlined
 from .types import FloatArray, IntArray
 
 
@@ -16,6 +16,12 @@ def grown(values: FloatArray, size: int) -> FloatArray:
     larger = np.empty((2 * size, *values.shape[1:]))
     put(values, larger[: len(values)])
     return larger
+
+
+@inlined
+def cut(values: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:
+    """The first ``size`` numbers, and the rest."""
+    return values[:size], values[size:]
 
 
 @compiled

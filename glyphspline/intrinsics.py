@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
+import numpy as np
+
 Value = TypeVar("Value")
 
 
@@ -18,3 +20,8 @@ def borrowed(value: Value) -> Value:
 
 def keep_alive(owners: Any) -> None:
     """Do nothing, but use the arrays: they live at least until here."""
+
+
+def chosen(condition: Any, a: Any, b: Any) -> Any:
+    """One of two numbers, without a branch; with arrays of conditions, an array."""
+    return np.where(condition, a, b) if isinstance(condition, np.ndarray) else (a if condition else b)

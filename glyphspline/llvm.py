@@ -39,9 +39,17 @@ def _keep_alive(context: Any, owners: Any) -> Any:
     return types.none(owners), code
 
 
+def _chosen(context: Any, condition: Any, a: Any, b: Any) -> Any:
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.select(*arguments)
+
+    return types.float64(types.boolean, types.float64, types.float64), code
+
+
 _MADE = {
     intrinsics.borrowed: intrinsic(_borrowed),
     intrinsics.keep_alive: intrinsic(_keep_alive),
+    intrinsics.chosen: intrinsic(_chosen),
 }
 
 

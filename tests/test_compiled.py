@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 
 import glyphspline as gs
-from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import interpolate_batch
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import Polygons
 from glyphspline.interpolation.reference import prepare
 from glyphspline.interpolation.roots import footpoint
 
@@ -137,7 +138,7 @@ def test_a_batch_of_open_arcs_is_those_one_by_one() -> None:
     tangents = rng.standard_normal((5, 2, 2))
     tangents[3, 1] = np.nan
     offsets = np.cumsum([0, *map(len, arcs)])
-    found = interpolate_batch(np.concatenate(arcs), offsets, Method(closed=False), end_tangents=tangents)
+    found = interpolate_batch(Polygons(np.concatenate(arcs), offsets, tangents=tangents), Method(closed=False))
     for k, arc in enumerate(arcs):
         pair: Any = tuple(None if np.isnan(t[0]) else t for t in tangents[k])
         one = gs.interpolate(arc, closed=False, end_tangents=pair)

@@ -12,10 +12,10 @@ from ..compiled import compiled
 from ..curves.pairing import SHARPNESS, pair_stretches
 from ..curves.spline_beziers import spline_beziers
 from ..errors import GlyphsplineError
-from ..interpolation.api import interpolate_batch
+from ..interpolation.batch import interpolate_batch
 from ..interpolation.kernels.driver import distance
 from ..interpolation.method import Fallback, Method
-from ..interpolation.polygon import NONE_HELD, explain
+from ..interpolation.polygon import NO_FLAGS, Polygons, explain
 from ..interpolation.result import BatchedInterpolation, Interpolation
 from ..outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ..outlines.places import sampled
@@ -42,23 +42,22 @@ def method_for(options: Options, fallback: Fallback) -> Method:
 
 
 def interpolated(
-    points: FloatArray, offsets: IntArray, options: Options, held: BoolArray = NONE_HELD
+    points: FloatArray, offsets: IntArray, options: Options, held: BoolArray = NO_FLAGS
 ) -> BatchedInterpolation:
     """Interpolate closed polygons.
 
     Lemma 2 has an interval everywhere on graded polygons, which need no fallback; others have that of the options.
 
     Args:
-        points: (n, 2) end to end, with offsets. held: see :func:`.api.interpolate_batch`.
+        points: (n, 2) end to end, with offsets. held: see :class:`.Polygons`.
 
     Raises:
         PolygonError: one that cannot be interpolated; its ``contour`` is the number of the polygon.
     """
     ratio, ends = min(options.max_ratio, CERTAIN_RATIO) * (1 + 1e-9), pairwise(offsets.tolist())
     even = np.array([chords_of(points[first:last], ratio)[1] for first, last in ends], dtype=np.bool_)
-    found = interpolate_batch(
-        points, offsets, method_for(options, options.fallback), by_knot=even, held=held, threads=1
-    )
+    polygons = Polygons(points, offsets, held=held, by_knot=even)
+    found = interpolate_batch(polygons, method_for(options, options.fallback), threads=1)
     for k in np.flatnonzero(found.arrays.whole[:, 0]).tolist():
         raise explain(points[offsets[k] : offsets[k + 1]], "chord", True).locate(contour=k)
     return found

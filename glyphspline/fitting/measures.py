@@ -63,7 +63,7 @@ def solved_columns(parts: Sequence[tuple[BatchedInterpolation, IntArray]]) -> Co
     """
     counts, iterations, fallbacks = np.concatenate([found.arrays.whole[which, 1:4] for found, which in parts]).T
     residuals = np.concatenate([found.last_residuals[which] for found, which in parts])
-    tolerances = np.concatenate([found.tolerances[which] for found, which in parts])
+    tolerances = np.concatenate([found.arrays.tolerances[which] for found, which in parts])
     return {
         "vertices": counts.tolist(),
         "segments": counts.tolist(),

@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..errors import OptionError, PolygonError, require_choice
-from ..types import BoolArray, FloatArray, IntArray
-from .batch import run_batch
+from ..types import FloatArray
+from .batch import interpolate_batch
 from .method import Fallback, Method, Parametrisation, Tangents, method_of
-from .polygon import NO_KNOTS, NO_TANGENTS, NONE_HELD, Polygons, as_points, as_tangents, explain
-from .result import BatchedInterpolation, Interpolation
+from .polygon import NO_KNOTS, NO_TANGENTS, Polygons, as_points, as_tangents, explain
+from .result import Interpolation
 
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
 
@@ -180,10 +180,6 @@ def interpolate_each(
         parts.append(p)
     if not good:
         return results
-    ends: Any = None
-    if tangents is not None and not method.closed:
-        ends = as_tangents([tangents[k] for k in good], parts[0].shape[1])
-
     found: list[Any]
     if method.readable:
         found = [
@@ -191,10 +187,15 @@ def interpolate_each(
             for j, k in enumerate(good)
         ]
     else:
-        points, offsets = parts[0] if len(parts) == 1 else np.concatenate(parts), [0, *accumulate(map(len, parts))]
-        knots = np.concatenate(given) if given else None
-        batch = interpolate_batch(points, np.array(offsets), method, knots=knots, end_tangents=ends, threads=threads)
-        found = batch.results((points.copy() if len(parts) == 1 else points) if keep_points else None)
+        alone = len(parts) == 1
+        polygons = Polygons(
+            parts[0] if alone else np.concatenate(parts),
+            np.array([0, *accumulate(map(len, parts))]),
+            np.concatenate(given) if given else NO_KNOTS,
+            as_tangents([tangents[k] for k in good], parts[0].shape[1]) if tangents else NO_TANGENTS,
+        )
+        points = (polygons.points.copy() if alone else polygons.points) if keep_points else None
+        found = interpolate_batch(polygons, method, threads).results(points)
     for j, k in enumerate(good):
         results[k] = found[j] or explain(parts[j], given[j] if given else method.knots, method.closed)
     return results
@@ -250,44 +251,3 @@ def interpolate_vertex(
 
     method = Method(1, residual_tolerance=residual_tolerance, max_iterations=max_iterations)
     return interpolate_one_vertex(points, k, method, whole_curve)
-
-
-def interpolate_batch(
-    points: FloatArray,
-    offsets: IntArray,
-    method: Method,
-    *,
-    knots: FloatArray | None = None,
-    end_tangents: FloatArray | None = None,
-    by_knot: BoolArray | None = None,
-    residual_tolerances: FloatArray | None = None,
-    held: BoolArray = NONE_HELD,
-    threads: int | None = None,
-) -> BatchedInterpolation:
-    """Interpolation of many polygons in shared arrays. A bad polygon has a status and raises no exception.
-
-    Args:
-        points: (N, d) float64, contiguous, d ≥ 2; offsets: (K + 1,) int64, where each polygon begins, and N.
-        method: of degree 3, without diagnostics.
-        knots: given parameters of all polygons end to end (n + 1 each if closed, n if open), unless the method has a
-            rule.
-        end_tangents: (K, 2, d) of open arcs, NaN for natural ends; None: all are natural.
-        by_knot: (K,) polygons with ``fallback="knot"`` instead of the method's.
-        residual_tolerances: (K,) in place of the method's.
-        held: (N,) vertices of closed polygons whose control points stay at them, which the curve need not pass through;
-            or ().
-        threads: number of threads; None for one a core. Results do not depend on it.
-    """
-    count = len(offsets) - 1
-    peak_shares, tolerances = np.empty((2, count))
-    peak_shares[:] = method.peak_share
-    if by_knot is not None:
-        peak_shares[by_knot] = 0.0
-    given = method.residual_tolerance if residual_tolerances is None else residual_tolerances
-    tolerances[:] = np.nan if given is None else given
-    tangents = NO_TANGENTS if end_tangents is None else end_tangents
-    if not method.closed and end_tangents is None:
-        tangents = np.full((count, 2, points.shape[1]), np.nan)
-    own_knots = NO_KNOTS if knots is None else knots
-    polygons = Polygons(points, offsets, own_knots, tangents, held, peak_shares, tolerances)
-    return run_batch(polygons, method, threads)

@@ -15,23 +15,31 @@ from ..types import IntArray
 from .method import Method
 from .plain import interpolate
 from .polygon import Polygons
-from .result import BatchedInterpolation, Found
+from .result import BatchedInterpolation, room_for
 
 LEAST_VERTICES = 1024
 """Minimum work of a thread at a time, some 0.3 ms: long compared with the cost of the exchange."""
 
 
-def run_batch(polygons: Polygons, method: Method, threads: int | None = 1) -> BatchedInterpolation:
-    """Run the driver over polygons, by a method of degree 3, without diagnostics."""
+def interpolate_batch(polygons: Polygons, method: Method, threads: int | None = None) -> BatchedInterpolation:
+    """Interpolate many polygons in shared arrays. A bad polygon has a status and raises no exception.
+
+    Args:
+        polygons: their points are (N, d) float64, contiguous, d ≥ 2.
+        method: of degree 3, without diagnostics.
+        threads: number of threads; None for one a core. Results do not depend on it.
+    """
     (total, d), offsets = polygons.points.shape, polygons.offsets
-    found = Found.empty(total, len(offsets) - 1, method.closed, d)
+    if not method.closed and not len(polygons.tangents):
+        polygons = polygons._replace(tangents=np.full((len(offsets) - 1, 2, d), np.nan))
+    room = room_for(total, len(offsets) - 1, method.closed, d)
 
     def work(part: tuple[int, int]) -> Any:
-        return interpolate(*part, polygons, method.rule, found)
+        return interpolate(*part, polygons, method.rule, *room)
 
     residuals = over_threads(work, _parts(offsets, threads), threads)
     joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(offsets, method.closed, polygons.tolerances, joined, found)
+    return BatchedInterpolation(offsets, d, method.closed, joined, room)
 
 
 def _threads(threads: int | None) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from math import nan
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
 
 from ..curves import DEGREES
@@ -49,12 +50,20 @@ TIE_DISTANCE = 1e-14
 
 
 class Rule(NamedTuple):
-    """What compiled functions read of a :class:`Method`; exponent: of the chord length in the knots, or ``GIVEN``."""
+    """What compiled functions read of a :class:`Method`.
+
+    Attributes:
+        exponent: of the chord length in the knots, or ``GIVEN``.
+        tolerance: of residuals; NaN: the one of ``RELATIVE_TOLERANCE``.
+        peak_share: ``PEAK_SHARE`` with ``fallback="peak"``, else 0.
+    """
 
     closed: bool
     variant: int
     margin: float
     exponent: float
+    tolerance: float
+    peak_share: float
     max_iterations: int
 
 
@@ -109,7 +118,10 @@ class Method:
     def rule(self) -> Rule:
         """The method in numbers."""
         exponent = GIVEN if self.knots is None else CHORD_EXPONENT[self.knots]
-        return Rule(self.closed, self.variant, float(self.margin), exponent, self.max_iterations)
+        tolerance = nan if self.residual_tolerance is None else float(self.residual_tolerance)
+        return Rule(
+            self.closed, self.variant, float(self.margin), exponent, tolerance, self.peak_share, self.max_iterations
+        )
 
     def tolerance_for(self, extent: float) -> float:
         """The residual tolerance for a polygon of this extent."""

@@ -31,7 +31,7 @@ from .kernels.driver import (
     unit_of,
 )  # fmt: skip
 from .kernels.footpoint import WORK
-from .kernels.lemma2 import CLOSE, STEPS, coefficients, value_at, vertex_interval
+from .kernels.lemma2 import STEPS, arc_interval, begin, finish, halley, simple
 from .kernels.passes import (
     ELSE,
     LEFT,
@@ -48,21 +48,24 @@ from .kernels.passes import (
 from .kernels.search import FINE, GIVEN_UP, SearchedCurve, SearchRoom, look_again
 from .method import RELATIVE_TOLERANCE, Rule
 from .polygon import LARGEST, SAME_VERTEX, SMALLEST, Polygons
-from .result import Found
+from .result import Found, laid_out
 
 where: Any = np.where  # its types have another result for what may be None
 
 
 @in_numpy(driver.interpolate)
-def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> FloatArray:
+def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, numbers: FloatArray, whole: IntArray) -> FloatArray:
     """As :func:`.kernels.driver.interpolate`."""
+    found = laid_out(
+        numbers, whole, len(polygons.points), len(polygons.offsets) - 1, rule.closed, polygons.points.shape[1]
+    )
     _prepare(k0, k1, polygons, rule, found)
     return (driver.iterate if rule.variant in (0, 4) else _iterate)(k0, k1, polygons, rule, found)
 
 
 def _prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> None:
     """As :func:`.kernels.driver.prepare`."""
-    offsets, tolerances, kept, closed = polygons.offsets, polygons.tolerances, found.kept, rule.closed
+    offsets, kept, closed = polygons.offsets, found.kept, rule.closed
     good: list[int] = []
     for k in range(k0, k1):
         first, last, shift = int(offsets[k]), int(offsets[k + 1]), k if closed else 0
@@ -72,8 +75,7 @@ def _prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> 
         found.whole[k] = (BAD_POLYGON, n, -1, 0, 0, 0)
         if n < 0:
             continue
-        if np.isnan(tolerances[k]):
-            tolerances[k] = RELATIVE_TOLERANCE * extent
+        found.tolerances[k] = RELATIVE_TOLERANCE * extent if np.isnan(rule.tolerance) else rule.tolerance
         own = kept[first : first + n]
         fine = _set_knots(points[own], own, rule.exponent, given, u[: n + closed])
         found.whole[k, STATUS] = OK if fine else BAD_KNOTS
@@ -176,7 +178,8 @@ class Strip:
 
 def _set_intervals(strip: Strip, h: FloatArray, polygons: Polygons, rule: Rule, found: Found) -> None:
     """Search intervals of all polygons of a strip, with their fallbacks and rate bounds."""
-    offsets, held, peak_shares, bounds = polygons.offsets, polygons.held, polygons.peak_shares, found.bounds
+    offsets, held, bounds = polygons.offsets, polygons.held, found.bounds
+    peak_shares = where(np.resize(polygons.by_knot, len(offsets) - 1), 0.0, rule.peak_share)
     rows = offsets[strip.which][strip.owners] + strip.numbers
     low, high, least, missing = _intervals(h, strip.lanes, rule, peak_shares[strip.which][strip.owners])
     if not strip.closed and rule.variant > 1:
@@ -184,9 +187,11 @@ def _set_intervals(strip: Strip, h: FloatArray, polygons: Polygons, rule: Rule, 
             q, k = strip.owners[j], strip.which[strip.owners[j]]
             n, origin, natural = int(strip.counts[q]), strip.origins[q], np.zeros(2)
             set_natural(polygons.tangents[k], n, h[origin - PAD :], natural)
-            low[j], high[j], least[j], missing[j] = vertex_interval(
+            *own, stands = arc_interval(
                 h, strip.lanes[j], strip.numbers[j], n, rule, peak_shares[k], natural, np.empty((2, 4))
             )
+            if stands:
+                low[j], high[j], least[j], missing[j] = *own, False
     if len(held):
         still = held[offsets[strip.which][strip.owners] + found.kept[rows]]
         low[still], high[still], least[still], missing[still] = 0.0, 0.0, 1.0, False
@@ -202,63 +207,25 @@ def _set_intervals(strip: Strip, h: FloatArray, polygons: Polygons, rule: Rule, 
 def _intervals(
     h: FloatArray, lanes: IntArray, rule: Rule, peak_shares: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """As :func:`.kernels.lemma2.vertex_interval` has them, for many vertices of closed curves."""
-    a, b, c, d, variant = h[lanes - 2], h[lanes - 1], h[lanes], h[lanes + 1], rule.variant
-    missing, zero = np.zeros(len(lanes), dtype=np.bool_), np.zeros(len(lanes))
-    if variant == 0:
-        return -(a + b), c + d, zero, missing
-    before0, before1, before2, knot, after1, after2, after3 = coefficients(a, b, c, d)
-    if variant == 1:
-        return -b, c, np.minimum(before0, after3), missing
-    if variant == 3:
-        return zero, zero.copy(), knot, missing
-    right = after1 > knot
-    c1, o1 = where(right, after1, before2), where(right, before2, after1)
-    c2, o2 = where(right, after2, before1), where(right, before1, after2)
-    c3, o3 = where(right, after3, before0), where(right, before0, after3)
-    d0, d1, d2 = c1 - knot, c2 - c1, c3 - c2
-    square = d1 * d1 - d0 * d2
-    y = where((square < 0.0) | ((d1 >= 0.0) & (d2 > 0.0)), 1.0, d0 / (d0 - d1 + np.sqrt(square)))
-    y = where(d0 <= 0.0, 0.0, y)
-    top = value_at(knot, c1, c2, c3, y)
-    low_peak, level = top <= 0.5, np.full(len(lanes), 0.5 + rule.margin)
-    level = where(peak_shares > 0.0, np.minimum(level, peak_shares * top), level)
-    alone, outside = top <= level, knot < level
-    far = where(c3 >= level, 1.0, _crossings(knot, c1, c2, c3, level, y, where(alone | (c3 >= level), y, 1.0)))
-    b1, b2, b3 = where(outside, c1, o1), where(outside, c2, o2), where(outside, c3, o3)
-    start, clipped = where(outside, y, 0.0), ~outside & (o3 >= level)
-    stop = where(alone | clipped, start, where(outside, 0.0, 1.0))
-    near = _crossings(knot, b1, b2, b3, level, start, stop)
-    near = where(outside, near, where(clipped, -1.0, -near))
-    least = np.minimum(where(c3 >= level, c3, level), where(clipped, o3, level))
-    far, near, least = where(alone, y, far), where(alone, y, near), where(alone, top, least)
-    none = low_peak & (peak_shares == 0.0)
-    low = where(none, 0.0, where(right, near, -far))
-    high = where(none, 0.0, where(right, far, -near))
-    least = where(none, knot, least)
-    return low * where(low < 0.0, b, c), high * where(high < 0.0, b, c), least, low_peak
+    """As :func:`.kernels.lemma2.set_intervals` has them."""
+    a, b, c, d = h[lanes - 2], h[lanes - 1], h[lanes], h[lanes + 1]
+    if rule.variant in (0, 1, 3):
+        return *simple(a, b, c, d, rule.variant), np.zeros(len(lanes), dtype=np.bool_)
+    first, second, (behind, sign, least, missing) = begin(a, b, c, d, rule.margin, peak_shares)
+    low, high = finish(_crossed(*first), _crossed(*second), behind, sign, (missing > 0.0) & (peak_shares == 0.0), b, c)
+    return low, high, least, missing > 0.0
 
 
-def _crossings(
-    c0: FloatArray, c1: FloatArray, c2: FloatArray, c3: FloatArray, level: FloatArray, inside: FloatArray,
-    outside: FloatArray,
+def _crossed(
+    k0: FloatArray, k1: FloatArray, k2: FloatArray, k3: FloatArray, inside: FloatArray, outside: FloatArray,
+    x: FloatArray, final: FloatArray,
 ) -> FloatArray:  # fmt: skip
-    """As :func:`.kernels.lemma2.crossing` has them; where ``outside`` is ``inside``, that."""
-    k0, k1, k3 = c0 - level, 3.0 * (c1 - c0), c3 - c0 + 3.0 * (c1 - c2)
-    k2 = 3.0 * (c2 - c1) - k1
-    x = 0.5 * (inside + outside)
-    going = np.ones(len(x), dtype=np.bool_)
+    """Where crossings are: as in :mod:`.kernels.lemma2`."""
+    done = final > 0.0
     for _ in range(STEPS):
-        excess, bend = k0 + x * (k1 + x * (k2 + x * k3)), k2 + 3.0 * x * k3
-        slope = k1 + x * (k2 + bend)
-        inside, outside = where(excess >= 0.0, x, inside), where(excess >= 0.0, outside, x)
-        steep = slope * slope - excess * bend
-        new = x - excess * slope / where(steep != 0.0, steep, 1.0)
-        close = abs(new - x) <= CLOSE
-        between = (np.minimum(inside, outside) < new) & (new < np.maximum(inside, outside))
-        new = where(close | between, new, 0.5 * (inside + outside))
-        x, going = where(going, new, x), going & ~close & (new != x)
-        if not going.any():
+        new, inside, outside, last = halley(k0, k1, k2, k3, inside, outside, x)
+        x, done = where(done, x, new), done | last
+        if done.all():
             break
     return x
 
@@ -278,7 +245,7 @@ def _iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> 
         whole[which, SEARCHES] += searched
         whole[which, UNCERTIFIED] += uncertified
         whole[which, ITERATIONS] += 1
-        over = (errors < polygons.tolerances[which] * state.units) | ~(np.inf > errors)
+        over = (errors < found.tolerances[which] * state.units) | ~(np.inf > errors)
         over |= whole[which, ITERATIONS] >= rule.max_iterations
         for q in np.flatnonzero(over).tolist():
             state.store(q, polygons, found)

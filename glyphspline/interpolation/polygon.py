@@ -24,7 +24,7 @@ LARGEST, SMALLEST = 1e100, 1e-100
 
 NO_TANGENTS = np.empty((0, 2, 2))
 NO_KNOTS = np.empty(0)
-NONE_HELD = np.empty(0, dtype=np.bool_)
+NO_FLAGS = np.empty(0, dtype=np.bool_)
 
 
 class Polygons(NamedTuple):
@@ -33,20 +33,18 @@ class Polygons(NamedTuple):
     Attributes:
         points: (N, d) end to end. offsets: (K + 1,) part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
         knots: () or all polygons' own parameters end to end, n + 1 each if closed, n if open.
-        tangents: (K, 2, d) end tangents of open arcs, NaN for natural ends; (0, 2, d) if closed.
+        tangents: (K, 2, d) end tangents of open arcs, NaN for natural ends; (): all are natural, or closed.
         held: (N,) whether a vertex of a closed polygon is held: its control point stays at it, and the curve need not
             pass through it; () where none is.
-        peak_shares: (K,) :attr:`.Method.peak_share` of each polygon.
-        tolerances: (K,) residual tolerances; NaN, until the driver writes the one of ``RELATIVE_TOLERANCE`` there.
+        by_knot: (K,) whether a polygon has ``fallback="knot"`` instead of the method's; () where none has.
     """
 
     points: FloatArray
     offsets: IntArray
-    knots: FloatArray
-    tangents: FloatArray
-    held: BoolArray
-    peak_shares: FloatArray
-    tolerances: FloatArray
+    knots: FloatArray = NO_KNOTS
+    tangents: FloatArray = NO_TANGENTS
+    held: BoolArray = NO_FLAGS
+    by_knot: BoolArray = NO_FLAGS
 
 
 def as_points(points: ArrayLike) -> FloatArray:

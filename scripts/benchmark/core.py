@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import interpolate_batch
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import Polygons
 from glyphspline.interpolation.reference import interpolate_reference, prepare
 from glyphspline.interpolation.result import BatchedInterpolation
 from glyphspline.interpolation.roots import footpoint
-from glyphspline.types import FloatArray, IntArray
+from glyphspline.types import FloatArray
 
 from .measure import Row, in_words, interleaved, ratio
 
@@ -58,25 +58,14 @@ def rows() -> list[Row]:
     return [row for suite in suites for row in suite()]
 
 
-@dataclass(frozen=True, eq=False)
-class Polygons:
-    """Polygons laid end to end beforehand, so that only the interpolation is timed."""
+def laid_out(polygons: list[FloatArray]) -> Polygons:
+    """Polygons end to end, beforehand, so that only the interpolation is timed."""
+    return Polygons(np.concatenate(polygons), np.cumsum([0, *map(len, polygons)]))
 
-    points: FloatArray
-    offsets: IntArray
-    tolerances: FloatArray
 
-    @classmethod
-    def of(cls, polygons: list[FloatArray]) -> Polygons:
-        """Lay out a list."""
-        tolerances = np.array([SHARE * np.ptp(p, axis=0).max() for p in polygons])
-        return cls(np.concatenate(polygons), np.cumsum([0, *map(len, polygons)]), tolerances)
-
-    def run(self, threads: int = 1, **options: Any) -> BatchedInterpolation:
-        """Interpolate all by variant 2."""
-        return interpolate_batch(
-            self.points, self.offsets, Method(**options), residual_tolerances=self.tolerances, threads=threads
-        )
+def run(polygons: Polygons, tolerance: float, threads: int = 1, **options: Any) -> BatchedInterpolation:
+    """Interpolate all by variant 2."""
+    return interpolate_batch(polygons, Method(residual_tolerance=tolerance, **options), threads)
 
 
 def read(results: Results) -> None:
@@ -92,10 +81,10 @@ def _footpoints(result: BatchedInterpolation) -> int:
 def against_reference() -> list[Row]:
     """One footpoint of variant 2 in whole runs, compiled and by numpy.roots."""
     once = random_polygon(20, 0)
-    polygons = Polygons.of([random_polygon(20, seed) for seed in range(100)])
-    ours, plain = polygons.run(), interpolate_reference(once, residual_tolerance=float(polygons.tolerances[0]))
+    all_ours = partial(run, laid_out([random_polygon(20, seed) for seed in range(100)]), 5 * SHARE)
+    ours, plain = all_ours(), interpolate_reference(once, residual_tolerance=5 * SHARE)
     few = partial(interpolate_reference, once, residual_tolerance=5 * SHARE, max_iterations=3)
-    times = interleaved({"ours": polygons.run, "roots": few}, rounds=9)
+    times = interleaved({"ours": all_ours, "roots": few}, rounds=9)
     assert plain.iterations == ours.arrays.whole[0, 2]
     a, b = times["ours"] / _footpoints(ours), times["roots"] / (4 * 20)
     return [ratio("variant 2 footpoint against the `numpy.roots` reference", b, a, 2000, 3500)]
@@ -110,15 +99,15 @@ def against_kurbo() -> list[Row]:
     spline = problem.spline(p)
     pieces = [CubicBez(*(Point(*map(float, point)) for point in piece)) for piece in spline.to_bezier()]
     targets = [Point(*map(float, point)) for point in p]
-    polygons = Polygons.of([random_polygon(90, seed) for seed in range(20)])
-    ours = polygons.run()
+    all_ours = partial(run, laid_out([random_polygon(90, seed) for seed in range(20)]), 5 * SHARE)
+    ours = all_ours()
 
     def kurbo() -> None:
         for i, target in enumerate(targets):
             pieces[i - 1].nearest(target, 1e-6)
             pieces[i].nearest(target, 1e-6)
 
-    times = interleaved({"ours": polygons.run, "kurbo": kurbo})
+    times = interleaved({"ours": all_ours, "kurbo": kurbo})
     a, b = times["ours"] / _footpoints(ours), times["kurbo"] / len(p)
     assert np.isfinite(footpoint(spline, p[0], problem.intervals.bounds[0], 0.0))
     return [ratio("against kurbo's nearest point at 1e-6, two pieces", b, a, 15, 25)]
@@ -160,14 +149,13 @@ def overhead() -> list[Row]:
     """What the public call takes beyond the compiled code, n = 20: 200 calls against one call of 200 contours."""
     p = smooth_polygon(20)
     calls = range(200)
-    together = Polygons.of([p] * len(calls))
-    tolerance = float(together.tolerances[0])
+    together, tolerance = laid_out([p] * len(calls)), SHARE * float(np.ptp(p, axis=0).max())
 
     def one_by_one() -> None:
         for _ in calls:
             read(gs.interpolate(p, residual_tolerance=tolerance))
 
-    times = interleaved({"one": one_by_one, "many": together.run}, rounds=25)
+    times = interleaved({"one": one_by_one, "many": lambda: run(together, tolerance)}, rounds=25)
     one, core = times["one"] / len(calls), times["many"] / len(calls)
     note = f"{in_words(one)}, {in_words(core)}"
     return [
@@ -180,8 +168,7 @@ def many() -> list[Row]:
     from scipy.interpolate import splprep
 
     contours = glyph_polygons(2000)
-    laid_out = Polygons.of(contours)
-    tolerance = SHARE * 2048
+    together, tolerance = laid_out(contours), SHARE * 2048
     rings = [np.concatenate([p, p[:1]]).T for p in contours]
 
     def library() -> None:
@@ -195,8 +182,8 @@ def many() -> list[Row]:
         {
             "2": lambda: read(ours(2)),
             "splprep": library,
-            "core 1": lambda: laid_out.run(1),
-            "core 2": lambda: laid_out.run(2),
+            "core 1": lambda: run(together, tolerance, 1),
+            "core 2": lambda: run(together, tolerance, 2),
         },
         rounds=9,
         repeat=5,
@@ -216,13 +203,13 @@ def growth() -> list[Row]:
     cases: dict[str, Any] = {}
     counts = {}
     for n in sizes:
-        polygons = Polygons.of([random_polygon(n, seed) for seed in range(max(1, 20_000 // n))])
-        counts[n] = _footpoints(polygons.run(max_iterations=20))
-        cases[str(n)] = lambda polygons=polygons: polygons.run(max_iterations=20)
+        each = laid_out([random_polygon(n, seed) for seed in range(max(1, 20_000 // n))])
+        cases[str(n)] = partial(run, each, 5 * SHARE, max_iterations=20)
+        counts[n] = _footpoints(cases[str(n)]())
     times = interleaved(cases, rounds=5)
-    each = {n: times[str(n)] / counts[n] for n in sizes}
-    ratio = max(each[n] for n in sizes[1:]) / min(each[n] for n in sizes[1:])
-    note = ", ".join(f"{n}: {in_words(seconds)}" for n, seconds in each.items())
+    footpoint_times = {n: times[str(n)] / counts[n] for n in sizes}
+    ratio = max(footpoint_times[n] for n in sizes[1:]) / min(footpoint_times[n] for n in sizes[1:])
+    note = ", ".join(f"{n}: {in_words(seconds)}" for n, seconds in footpoint_times.items())
     return [Row("a footpoint, slowest size against fastest, n = 10 to 100,000", ratio, must=1.5, more=False, note=note)]
 
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 import glyphspline as gs
-from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import interpolate_batch
 from glyphspline.interpolation.method import Method
 from glyphspline.interpolation.plain import State
-from glyphspline.interpolation.polygon import NO_KNOTS, NONE_HELD, Polygons, as_points
+from glyphspline.interpolation.polygon import Polygons, as_points
 from glyphspline.interpolation.reference import Iteration
 from glyphspline.types import FloatArray
 
@@ -26,20 +26,20 @@ class Passes:
     def __init__(self, points: FloatArray, method: Method, end_tangents: FloatArray | None = None) -> None:
         q, closed = as_points(points), method.closed
         offsets, pair = np.array([0, len(q)]), None if end_tangents is None else end_tangents[None]
-        batch = interpolate_batch(q, offsets, replace(method, max_iterations=0), end_tangents=pair)
+        tangents = np.full((1, 2, q.shape[1]), np.nan) if pair is None else pair
+        polygons = Polygons(q, offsets, tangents=tangents)
+        batch = interpolate_batch(polygons, replace(method, max_iterations=0))
         self.result, self.method, found = batch[0], method, batch.arrays
         n = len(self.result.parameters)
         self.knots, bounds = np.resize(self.result.spline.knots, n), found.bounds.copy()
         bounds[:n] -= self.knots[:, None]
-        tangents = np.full((1, 2, q.shape[1]), np.nan) if pair is None else pair
         with np.errstate(all="ignore"):
-            polygons = Polygons(q, offsets, NO_KNOTS, tangents, NONE_HELD, np.zeros(1), batch.tolerances)
             self.state = State(np.array([0]), polygons, closed, found._replace(bounds=bounds))
         self.first, self.n = int(self.state.strip.origins[0]), n
         self.free = slice(0, n) if closed else slice(1, n - 1)
         self.unit, self.origin = float(self.state.units[0]), q[found.kept[0]]
         self.start = self.state.P[:, self.first : self.first + n].T.copy()
-        self.limit = float(batch.tolerances[0]) * self.unit
+        self.limit = float(found.tolerances[0]) * self.unit
 
     def one_pass(self, controls: FloatArray) -> tuple[FloatArray, FloatArray, float]:
         """Footpoints on the curve of control points (n, d), these after the update, and the largest error before it."""

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, reduce, search_piece
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import Polygons
 from glyphspline.interpolation.reference import interpolate_reference
 from glyphspline.types import FloatArray
 from tests.polygons import random_polygon
@@ -118,7 +119,7 @@ def test_batches_are_of_one_dimension() -> None:
     polygons = [polygon(n, 6) for n in (5, 9, 14)]
     offsets = np.array([0, 5, 14, 28])
     for closed in (True, False):
-        batch = interpolate_batch(np.concatenate(polygons), offsets, Method(closed=closed))
+        batch = interpolate_batch(Polygons(np.concatenate(polygons), offsets), Method(closed=closed))
         many = gs.interpolate_many(polygons, closed=closed)
         for k, p in enumerate(polygons):
             alone = gs.interpolate(p, closed=closed)
@@ -160,7 +161,7 @@ def test_cusps_and_repeated_places_are_certified() -> None:
     for seed in range(12):
         p = polygon(12, 3 + seed % 4, seed).round()
         p[4:8] = p[[4, 5, 4, 5]] + 10.0 ** rng.uniform(-9, -1) * rng.normal(size=(4, p.shape[1]))
-        batch = interpolate_batch(p, np.array([0, len(p)]), Method(1, max_iterations=25))
+        batch = interpolate_batch(Polygons(p, np.array([0, len(p)])), Method(1, max_iterations=25))
         plain = interpolate_reference(p, 1, max_iterations=25)
         searched += int(batch.arrays.whole[0, 4])
         assert batch[0].uncertified == 0
@@ -183,11 +184,9 @@ def test_batches_take_knots_tangents_and_tolerances() -> None:
     knots = [np.cumsum(np.random.default_rng(len(p)).uniform(1, 2, len(p))) for p in polygons]
     tangents: list[Any] = [(np.ones(5), None), (None, None)]
     many = gs.interpolate_many(polygons, closed=False, knots=knots, end_tangents=tangents, residual_tolerance=1e-4)
-    batch = interpolate_batch(
-        np.concatenate(polygons), np.array([0, 5, 14]), Method(knots=None, closed=False), knots=np.concatenate(knots),
-        end_tangents=np.array([[np.ones(5), np.full(5, np.nan)], np.full((2, 5), np.nan)]),
-        residual_tolerances=np.full(2, 1e-4),
-    )  # fmt: skip
+    ends = np.array([[np.ones(5), np.full(5, np.nan)], np.full((2, 5), np.nan)])
+    laid_out = Polygons(np.concatenate(polygons), np.array([0, 5, 14]), np.concatenate(knots), ends)
+    batch = interpolate_batch(laid_out, Method(knots=None, closed=False, residual_tolerance=1e-4))
     for k, (p, u) in enumerate(zip(polygons, knots, strict=True)):
         plain = interpolate_reference(p, closed=False, knots=u, end_tangents=tangents[k], residual_tolerance=1e-4)
         for r in (many[k], batch[k]):

@@ -9,9 +9,10 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.curves.bspline import Spline
-from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import interpolate_batch
 from glyphspline.interpolation.kernels.footpoint import WORK, search_piece
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import Polygons
 from glyphspline.interpolation.reference import prepare
 from glyphspline.interpolation.roots import footpoint
 from scripts.adversarial_footpoints import BOUND, attack, attacks
@@ -128,7 +129,7 @@ def test_one_pass_finds_what_the_reference_finds(variant: int) -> None:
     rng = np.random.default_rng(11)
     for n in (5, 12, 60):
         p = uniform(rng, n)
-        result = interpolate_batch(p, np.array([0, n]), Method(variant, max_iterations=0))
+        result = interpolate_batch(Polygons(p, np.array([0, n])), Method(variant, max_iterations=0))
         problem = prepare(p, Method(variant))
         spline = problem.spline(p)
         for i in range(n):

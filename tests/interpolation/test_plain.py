@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from glyphspline.code_files import kept
-from glyphspline.interpolation.api import interpolate_batch
+from glyphspline.interpolation.batch import interpolate_batch
 from glyphspline.interpolation.method import Method
-from glyphspline.interpolation.polygon import NONE_HELD
+from glyphspline.interpolation.polygon import NO_FLAGS, NO_TANGENTS, Polygons
 from glyphspline.types import FloatArray
 from tests.polygons import lognormal_chords, near_cusps, polygon, uniform
 
@@ -48,17 +48,19 @@ def results() -> dict[str, FloatArray]:
     for number, (d, options) in enumerate(RUNS):
         method, rng = Method(**{"max_iterations": 25, **options}), np.random.default_rng(number)
         parts = polygons(d)[: 12 if method.variant in (0, 4) else None]
-        offsets, tangents, held = np.cumsum([0, *map(len, parts)]), None, NONE_HELD
+        offsets, tangents, held = np.cumsum([0, *map(len, parts)]), NO_TANGENTS, NO_FLAGS
         if not method.closed:
             natural = rng.random((len(parts), 2, 1)) < 0.5
             tangents = np.where(natural, np.nan, rng.normal(size=(len(parts), 2, d)))
         elif number % 2:
             held = rng.random(offsets[-1]) < 0.1
-        batch = interpolate_batch(np.concatenate(parts), offsets, method, held=held, end_tangents=tangents, threads=1)
+        batch = interpolate_batch(
+            Polygons(np.concatenate(parts), offsets, tangents=tangents, held=held), method, threads=1
+        )
         found[f"{number} whole"] = batch.arrays.whole[:, :2].astype(np.float64)
         for k, r in enumerate(batch.results()):
             if r:
-                counts = [r.iterations, r.fallbacks, r.rate_bound, r.uncertified, batch.tolerances[k]]
+                counts = [r.iterations, r.fallbacks, r.rate_bound, r.uncertified, batch.arrays.tolerances[k]]
                 found[f"{number} {k}"] = np.concatenate([
                     r.spline.control_points.ravel(), r.spline.knots, r.parameters, r.intervals.ravel(), r.residuals,
                     r.merged, counts,

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import glyphspline as gs
-from glyphspline.interpolation.api import interpolate_batch
-from glyphspline.interpolation.batch import _parts, over_threads
+from glyphspline.interpolation.batch import _parts, interpolate_batch, over_threads
 from glyphspline.interpolation.method import Method
+from glyphspline.interpolation.polygon import Polygons
 from tests.polygons import polygon, uniform
 
 
@@ -56,9 +56,9 @@ def test_results_do_not_depend_on_batching(options: dict[str, Any]) -> None:
         contours.insert(4, np.zeros((6, 2)))  # refused
         offsets = np.cumsum([0, *map(len, contours)])
         settings: dict[str, Any] = {"residual_tolerance": 1e-7, "max_iterations": 60, **options}
-        together = interpolate_batch(np.concatenate(contours), offsets, Method(**settings), threads=1)
+        together = interpolate_batch(Polygons(np.concatenate(contours), offsets), Method(**settings), threads=1)
         for k, contour in enumerate(contours):
-            alone = interpolate_batch(contour, np.array([0, len(contour)]), Method(**settings), threads=1)
+            alone = interpolate_batch(Polygons(contour, np.array([0, len(contour)])), Method(**settings), threads=1)
             assert together.arrays.whole[k].tolist() == alone.arrays.whole[0].tolist(), k
             if alone.arrays.whole[0, 0]:
                 continue

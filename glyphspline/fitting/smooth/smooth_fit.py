@@ -19,7 +19,7 @@ import numpy as np
 
 from ...curves.pairing import SHARPNESS, pair_stretches
 from ...errors import GlyphsplineError
-from ...interpolation.polygon import NONE_HELD
+from ...interpolation.polygon import NO_FLAGS
 from ...interpolation.result import BatchedInterpolation, Interpolation, reversed_interpolation, turned
 from ...outlines.contour_arrays import ContourArrays, Polylines, cubic_contours, offsets_of
 from ...outlines.masters import MasterContour
@@ -278,7 +278,7 @@ class _Search:
         """Interpolate contours through points at their places, or beside them, and measure."""
         try:
             held = steps.held_corners(self.contours, which, places, offsets, self.rules.corner_angle, self.hold)
-            held = held if held.any() else NONE_HELD
+            held = held if held.any() else NO_FLAGS
             found = interpolated(points, offsets, self.options, held)
         except GlyphsplineError as error:
             error.contour = None if error.contour is None else int(which[error.contour])

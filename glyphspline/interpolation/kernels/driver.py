@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ...arrays import grown
+from ...arrays import cut, grown
 from ...compiled import compiled, inlined
 from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
@@ -14,9 +14,9 @@ from ..method import RELATIVE_TOLERANCE, Rule
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX, Polygons
 from ..polygon import SMALLEST as SMALLEST_EXTENT
-from ..result import Found
+from ..result import Found, laid_out
 from .footpoint import WORK
-from .lemma2 import vertex_interval
+from .lemma2 import LEAST, MISSING, ROOM, TOGETHER, arc_interval, set_intervals
 from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, one_pass, set_weights
 from .search import SearchedCurve, SearchRoom, settle
 
@@ -33,8 +33,12 @@ or beyond the ends of an arc.
 
 
 @compiled
-def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> FloatArray:
-    """Interpolate polygons k0 to k1 - 1; returns their residuals end to end."""
+def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, numbers: FloatArray, whole: IntArray) -> FloatArray:
+    """Interpolate polygons k0 to k1 - 1 into the arrays of :func:`.room_for`; returns their residuals end to end."""
+    found = laid_out(
+        borrowed(numbers), borrowed(whole), polygons.points.shape[0], polygons.offsets.shape[0] - 1, rule.closed,
+        polygons.points.shape[1],
+    )  # fmt: skip
     prepare(k0, k1, polygons, rule, found)
     return iterate(k0, k1, polygons, rule, found)
 
@@ -42,12 +46,15 @@ def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) 
 @compiled
 def prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> None:
     """Merge the vertices of polygons k0 to k1 - 1, compute knots and search intervals, relative to the knots yet."""
-    points, offsets, held, tolerances = polygons.points, polygons.offsets, polygons.held, polygons.tolerances
+    points, offsets, held, by_knot = polygons.points, polygons.offsets, polygons.held, polygons.by_knot
     knots, bounds, kept, closed, most = found.knots, found.bounds, found.kept, rule.closed, 0
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
-    own_room = np.zeros(most + 2 * PAD), np.zeros(2), np.zeros((2, 4))
-    h, natural, sides = borrowed(own_room)
+    room = np.zeros(ROOM + 10 + most + 2 * PAD)
+    R, rest = cut(borrowed(room), ROOM)
+    natural, rest = cut(rest, 2)
+    ends, h = cut(rest, 8)
+    sides = ends.reshape((2, 4))
     for k in range(k0, k1):
         first, last, shift = offsets[k], offsets[k + 1], k if closed else 0
         q, own, row = points[first:last], kept[first:last], found.whole[k]
@@ -57,8 +64,7 @@ def prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> N
         row[KEPT] = n
         if n < 0:
             continue
-        if np.isnan(tolerances[k]):
-            tolerances[k] = RELATIVE_TOLERANCE * extent
+        found.tolerances[k] = RELATIVE_TOLERANCE * extent if np.isnan(rule.tolerance) else rule.tolerance
         if not set_knots(q, own, n, closed, rule.exponent, given, u):
             row[STATUS] = BAD_KNOTS
             continue
@@ -66,15 +72,25 @@ def prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> N
         set_steps(u, n, closed, 1.0, h)
         if not closed:
             set_natural(polygons.tangents[k], n, h, natural)
-        least, peak_share = 1.0, polygons.peak_shares[k]
-        for i in range(n):
-            bounds[first + i, 0] = bounds[first + i, 1] = 0.0
-            if (closed or 0 < i < n - 1) and not (held.shape[0] > 0 and held[first + own[i]]):
-                low, high, value, missing = vertex_interval(h, PAD + i, i, n, rule, peak_share, natural, sides)
-                bounds[first + i, 0], bounds[first + i, 1], least = low, high, min(least, value)
-                row[FALLBACKS] += 1 if missing else 0
+        least, peak_share = 1.0, 0.0 if by_knot.shape[0] > 0 and by_knot[k] else rule.peak_share
+        start, stop = (0, n) if closed else (1, n - 1)
+        bounds[first, 0] = bounds[first, 1] = bounds[first + n - 1, 0] = bounds[first + n - 1, 1] = 0.0
+        for begin in range(start, stop, TOGETHER):
+            part = bounds[first + begin : first + min(begin + TOGETHER, stop)]
+            set_intervals(h, PAD + begin, rule, peak_share, part, R)
+            for j in range(part.shape[0]):
+                i = begin + j
+                if not closed and rule.variant > 1 and not 2 < i < n - 3:  # where fixed functions of an arc reach
+                    low, high, value, stands = arc_interval(h, PAD + i, i, n, rule, peak_share, natural, sides)
+                    if stands:
+                        part[j, 0], part[j, 1], R[LEAST + j], R[MISSING + j] = low, high, value, 0.0
+                if held.shape[0] > 0 and held[first + own[i]]:
+                    part[j, 0] = part[j, 1] = 0.0
+                else:
+                    least = min(least, R[LEAST + j])
+                    row[FALLBACKS] += 1 if R[MISSING + j] > 0.0 else 0
         found.rates[k] = 2.0 * (1.0 - least)
-    keep_alive(own_room)
+    keep_alive(room)
 
 
 @compiled
@@ -85,14 +101,18 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
     d, most, residuals, used = points.shape[1], 0, np.empty(64), 0
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
-    size = most + 2 * PAD + WHOLE
-    rows = np.zeros(size), np.zeros((most + LANES - 1) // LANES * BLOCK), np.zeros(2), np.zeros(d), np.zeros(d * AXIS)
-    tables = np.zeros((d, size)), np.zeros((d, size)), np.zeros((d, size)), np.zeros((4, d)), np.zeros((4, d))
-    scratch = np.zeros(SCRATCH), np.zeros((min(d, 4), 4)), np.zeros(WORK)
-    h, blocks, natural, e, T = borrowed(rows)
-    p, P, N, ends, b = borrowed(tables)
-    S, c, work = borrowed(scratch)
-    room = SearchRoom(b, c, e, work)
+    size, narrow, count = most + 2 * PAD + WHOLE, min(d, 4), (most + LANES - 1) // LANES
+    line = np.zeros(SCRATCH + 2 + d + 4 * narrow + d * AXIS + size + count * BLOCK)
+    tables, corners, work = np.zeros((3, d, size)), np.zeros((2, 4, d)), np.empty(WORK)
+    S, rest = cut(borrowed(line), SCRATCH)
+    natural, rest = cut(rest, 2)
+    e, rest = cut(rest, d)
+    c, rest = cut(rest, 4 * narrow)
+    T, rest = cut(rest, d * AXIS)
+    h, blocks = cut(rest, size)
+    p, P, N = borrowed(tables)[0], borrowed(tables)[1], borrowed(tables)[2]
+    ends, b = borrowed(corners)[0], borrowed(corners)[1]
+    room = SearchRoom(b, c.reshape((narrow, 4)), e, borrowed(work))
     for k in range(k0, k1):
         first, last, shift, row = offsets[k], offsets[k + 1], k if closed else 0, found.whole[k]
         n = row[KEPT]
@@ -106,7 +126,7 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
         start, stop = (PAD, PAD + n) if closed else (PAD + 1, PAD + n - 1)
         set_weights(h, start, stop, blocks)
         set_bounds(bounds[first:last], held[first:last], own, n, knot_unit, h, start, blocks)
-        passes, limit, width = 0, polygons.tolerances[k] * unit, 1 if variant == 4 else n
+        passes, limit, width = 0, found.tolerances[k] * unit, 1 if variant == 4 else n
         while True:
             fill_edges(P, n, closed, ends, natural)
             largest, now = 0.0, P
@@ -138,7 +158,7 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
         row[ITERATIONS] = passes - 1
         store(q, own, n, u, closed, 1.0 / unit, P, found.controls[first if closed else first + 2 * k :])
         store_footpoints(u, n, 1.0 / knot_unit, start, blocks, found.parameters[first:last], bounds[first:last])
-    keep_alive((rows, tables, scratch))
+    keep_alive((line, tables, corners, work))
     return residuals[:used]
 
 

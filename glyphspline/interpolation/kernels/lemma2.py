@@ -5,16 +5,28 @@ from the knot, the *main side*; y runs away from the knot there. Where it is as 
 interval with one end beyond the peak, and the other on the far side of the knot, or between knot and peak if the knot
 itself lies outside.
 
-For the first and the last two vertices of an arc W_i = B_i + F_i/2 takes the place of B_i (:mod:`..intervals`).
+Vertices are taken ``TOGETHER``, one stage after another, without branches: a compiler can do with several vertices what
+is written for one, and :mod:`..plain` calls the stages with arrays. For the first and the last two vertices of an arc
+W_i = B_i + F_i/2 takes the place of B_i (:mod:`..intervals`): they are done one by one.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
+from ...intrinsics import chosen
 from ...types import FloatArray, Real
 from ..method import END_MARGIN, Rule
+
+TOGETHER, ROW = 64, 132
+"""Vertices taken together, and the distance of their rows, which have room for two crossings a vertex."""
+
+# Rows of room. Of each crossing: powers of the function less the level, what bounds it on both sides, where it is, and
+# whether that is final. Of each vertex: whether the main side is that behind the knot, the sign of the second crossing;
+# the least value on the interval, and 1 where Lemma 2 has none.
+K0, K1, K2, K3, INSIDE, OUTSIDE, AT, FINAL, BEHIND, SIGN, LEAST, MISSING = (k * ROW for k in range(12))
+ROOM = 12 * ROW
 
 STEPS = 60
 CLOSE = 1e-6
@@ -23,47 +35,139 @@ CLOSE = 1e-6
 Side = tuple[float, float, float]
 """Bernstein coefficients of a function on one side of its knot, from there outwards."""
 
+Crossing = tuple[Real, Real, Real, Real, Real, Real, Real, Real]
+"""What the rows of a crossing have."""
+
 
 @compiled
-def vertex_interval(
+def set_intervals(h: FloatArray, k: int, rule: Rule, peak_share: float, bounds: FloatArray, R: FloatArray) -> None:
+    """Write the intervals (m, 2) of m vertices from k on, about their knots, and the rows ``LEAST`` and ``MISSING``.
+
+    Args:
+        h: knot intervals; h[j] is the one after u_j. m is ``TOGETHER`` at most.
+        peak_share: of ``fallback="peak"``, 0 for "knot".
+        R: ``ROOM`` numbers.
+    """
+    m = bounds.shape[0]
+    if rule.variant in (0, 1, 3):
+        for j in range(m):
+            i = k + j
+            bounds[j, 0], bounds[j, 1], R[LEAST + j] = simple(h[i - 2], h[i - 1], h[i], h[i + 1], rule.variant)
+            R[MISSING + j] = 0.0
+        return
+    for j in range(m):
+        i, n = k + j, TOGETHER + j
+        first, second, (R[BEHIND + j], R[SIGN + j], R[LEAST + j], R[MISSING + j]) = begin(
+            h[i - 2], h[i - 1], h[i], h[i + 1], rule.margin, peak_share
+        )
+        R[K0 + j], R[K1 + j], R[K2 + j], R[K3 + j], R[INSIDE + j], R[OUTSIDE + j], R[AT + j], R[FINAL + j] = first
+        R[K0 + n], R[K1 + n], R[K2 + n], R[K3 + n], R[INSIDE + n], R[OUTSIDE + n], R[AT + n], R[FINAL + n] = second
+    for first_row in (0, TOGETHER):
+        _cross(R[first_row:], m)
+    for j in range(m):
+        none = (R[MISSING + j] > 0.0) & (peak_share == 0.0)
+        bounds[j, 0], bounds[j, 1] = finish(
+            R[AT + j], R[AT + TOGETHER + j], R[BEHIND + j], R[SIGN + j], none, h[k + j - 1], h[k + j]
+        )
+
+
+@compiled
+def _cross(R: FloatArray, m: int) -> None:
+    """Halley's method for m crossings, until all are final."""
+    for _ in range(STEPS):
+        pending = 0
+        for j in range(m):
+            done, x = R[FINAL + j] > 0.0, R[AT + j]
+            new, R[INSIDE + j], R[OUTSIDE + j], final = halley(
+                R[K0 + j], R[K1 + j], R[K2 + j], R[K3 + j], R[INSIDE + j], R[OUTSIDE + j], x
+            )
+            R[AT + j], R[FINAL + j] = (x if done else new), (1.0 if done | final else 0.0)
+            pending += 0 if done | final else 1
+        if pending == 0:
+            break
+
+
+@compiled
+def simple(a: Real, b: Real, c: Real, d: Real, variant: int) -> tuple[Real, Real, Real]:
+    """The interval of variant 0, 1 or 3 for a vertex among spans a, b, c and d, and the least value of B_i on it."""
+    before, _, _, knot, _, _, after = coefficients(a, b, c, d)
+    if variant == 0:
+        return -(a + b), c + d, 0.0 * knot
+    if variant == 1:
+        return -b, c, chosen(after < before, after, before)
+    return 0.0 * knot, 0.0 * knot, knot
+
+
+@inlined
+def begin(
+    a: Real, b: Real, c: Real, d: Real, margin: float, peak_share: Real
+) -> tuple[Crossing, Crossing, tuple[Real, Real, Real, Real]]:
+    """Lemma 2 for a vertex among four spans: its two crossings before the first step, and the rows of the vertex."""
+    before0, before1, before2, knot, behind1, behind2, behind3 = coefficients(a, b, c, d)
+    behind = behind1 > knot
+    c1, o1 = chosen(behind, behind1, before2), chosen(behind, before2, behind1)
+    c2, o2 = chosen(behind, behind2, before1), chosen(behind, before1, behind2)
+    c3, o3 = chosen(behind, behind3, before0), chosen(behind, before0, behind3)
+    d0, d1, d2 = c1 - knot, c2 - c1, c3 - c2
+    square = d1 * d1 - d0 * d2
+    y = chosen((square < 0.0) | ((d1 >= 0.0) & (d2 > 0.0)), 1.0, d0 / (d0 - d1 + np.sqrt(square)))
+    y = chosen(d0 <= 0.0, 0.0, y)
+    top = value_at(knot, c1, c2, c3, y)
+    level = 0.5 + margin
+    level = chosen((peak_share > 0.0) & (peak_share * top < level), peak_share * top, level)
+    alone, outside, whole = top <= level, knot < level, c3 >= level
+    clipped = (knot >= level) & (o3 >= level)
+    final = chosen(alone | whole, 1.0, 0.0)
+    at = chosen(alone, y, chosen(whole, 1.0, 0.5 * (y + 1.0)))
+    first = (*powers(knot, c1, c2, c3, level), y, 1.0 + 0.0 * y, at, final)
+    b1, b2, b3 = chosen(outside, c1, o1), chosen(outside, c2, o2), chosen(outside, c3, o3)
+    inside, limit = chosen(outside, y, 0.0), chosen(outside, 0.0, 1.0)
+    at = chosen(alone, y, chosen(clipped, 1.0, 0.5 * (inside + limit)))
+    second = (*powers(knot, b1, b2, b3, level), inside, limit, at, chosen(alone | clipped, 1.0, 0.0))
+    main, other = chosen(whole, c3, level), chosen(clipped, o3, level)
+    missing = top <= 0.5
+    least = chosen(alone, top, chosen(other < main, other, main))
+    least = chosen(missing & (peak_share == 0.0), knot, least)
+    return (
+        first,
+        second,
+        (chosen(behind, 1.0, 0.0), chosen(alone | outside, 1.0, -1.0), least, chosen(missing, 1.0, 0.0)),
+    )
+
+
+@compiled
+def finish(x: Real, y: Real, behind: Real, sign: Real, none: Real, b: Real, c: Real) -> tuple[Real, Real]:
+    """The interval of a vertex between spans b and c: from its crossings, or, where there is none, the knot."""
+    far, near = x, sign * y
+    low, high = chosen(behind > 0.0, near, -far), chosen(behind > 0.0, far, -near)
+    low, high = chosen(none, 0.0, low), chosen(none, 0.0, high)
+    return low * chosen(low < 0.0, b, c), high * chosen(high < 0.0, b, c)
+
+
+@compiled
+def arc_interval(
     h: FloatArray, j: int, i: int, n: int, rule: Rule, peak_share: float, natural: FloatArray, sides: FloatArray
 ) -> tuple[float, float, float, bool]:
-    """The interval of vertex i of n about its knot, the least value of B_i on it, and whether Lemma 2 has none.
+    """The interval of vertex i of an arc of n, of the first or the last two inner ones, by W_i, in variants 2 to 4.
 
     Args:
         h: knot intervals; h[j] is the one after u_i.
         peak_share: of ``fallback="peak"``, 0 for "knot".
         natural: (2,) see :func:`add_fixed`. sides: (2, 4) scratch.
+
+    Returns:
+        The interval about the knot, the least value on it, and whether it stands in place of that of B_i.
     """
-    left, right, variant = h[j - 1], h[j], rule.variant
-    if variant == 0:
-        return -(h[j - 2] + left), right + h[j + 1], 0.0, False
-    a0, a1, a2, knot, b1, b2, b3 = coefficients(h[j - 2], left, right, h[j + 1])
-    if variant == 1:
-        return -left, right, min(a0, b3), False
-    if not rule.closed and not 2 < i < n - 3:  # a fixed function of an arc reaches no other intervals
-        before, after = sides[0], sides[1]
-        before[0], before[1], before[2], before[3] = a0, a1, a2, knot
-        after[0], after[1], after[2], after[3] = knot, b1, b2, b3
-        c = add_fixed(h, j - 1, i, n, natural[0], natural[1], rule.margin, before, after)
-        if variant == 3:
-            return 0.0, 0.0, before[3], False
-        low, high, least, found = one_interval(before, after, c, peak_share if peak_share > 0.0 else 1.0)
-        if found:
-            return low * (left if low < 0.0 else right), high * (left if high < 0.0 else right), least, False
-    if variant == 3:
-        return 0.0, 0.0, knot, False
-    rises, before_knot, behind_knot = b1 > knot, (a2, a1, a0), (b1, b2, b3)
-    main, other = (behind_knot, before_knot) if rises else (before_knot, behind_knot)
-    y, top = peak_of(knot, main)
-    if top <= 0.5 and peak_share == 0.0:
-        return 0.0, 0.0, knot, True
-    level = 0.5 + rule.margin
-    if peak_share > 0.0:
-        level = min(level, peak_share * top)
-    near, far, least = level_interval(knot, main, other, y, top, level)
-    low, high = (near, far) if rises else (-far, -near)
-    return low * (left if low < 0.0 else right), high * (left if high < 0.0 else right), least, top <= 0.5
+    left, right, before, after = h[j - 1], h[j], sides[0], sides[1]
+    before[0], before[1], before[2], before[3], after[1], after[2], after[3] = coefficients(
+        h[j - 2], left, right, h[j + 1]
+    )
+    after[0] = before[3]
+    c = add_fixed(h, j - 1, i, n, natural[0], natural[1], rule.margin, before, after)
+    if rule.variant == 3:
+        return 0.0, 0.0, before[3], True
+    low, high, least, found = one_interval(before, after, c, peak_share if peak_share > 0.0 else 1.0)
+    return low * (left if low < 0.0 else right), high * (left if high < 0.0 else right), least, found
 
 
 @compiled
@@ -193,22 +297,34 @@ def value_at(c0: Real, c1: Real, c2: Real, c3: Real, x: Real) -> Real:
 @compiled
 def crossing(c0: float, c1: float, c2: float, c3: float, level: float, inside: float, outside: float) -> float:
     """Where a cubic falls below a level, once between ``inside``, where it is as high, and ``outside``."""
-    k0, k1, k3 = c0 - level, 3.0 * (c1 - c0), c3 - c0 + 3.0 * (c1 - c2)
-    k2 = 3.0 * (c2 - c1) - k1
+    k0, k1, k2, k3 = powers(c0, c1, c2, c3, level)
     x = 0.5 * (inside + outside)
     for _ in range(STEPS):
-        excess, bend = k0 + x * (k1 + x * (k2 + x * k3)), k2 + 3.0 * x * k3
-        slope = k1 + x * (k2 + bend)
-        if excess >= 0.0:
-            inside = x
-        else:
-            outside = x
-        steep = slope * slope - excess * bend
-        before, x = x, x - excess * slope / (steep if steep != 0.0 else 1.0)
-        if abs(x - before) <= CLOSE:
-            break
-        if not min(inside, outside) < x < max(inside, outside):
-            x = 0.5 * (inside + outside)
-        if x == before:
+        x, inside, outside, final = halley(k0, k1, k2, k3, inside, outside, x)
+        if final:
             break
     return x
+
+
+@compiled
+def powers(c0: Real, c1: Real, c2: Real, c3: Real, level: Real) -> tuple[Real, Real, Real, Real]:
+    """A cubic in Bernstein form, less a level, by powers."""
+    k1 = 3.0 * (c1 - c0)
+    return c0 - level, k1, 3.0 * (c2 - c1) - k1, c3 - c0 + 3.0 * (c1 - c2)
+
+
+@compiled
+def halley(
+    k0: Real, k1: Real, k2: Real, k3: Real, inside: Real, outside: Real, x: Real
+) -> tuple[Real, Real, Real, Real]:
+    """A step of Halley's method from x, what bounds the crossing then, and whether it was the last one."""
+    excess, bend = k0 + x * (k1 + x * (k2 + x * k3)), k2 + 3.0 * x * k3
+    slope = k1 + x * (k2 + bend)
+    above = excess >= 0.0
+    inside, outside = chosen(above, x, inside), chosen(above, outside, x)
+    steep = slope * slope - excess * bend
+    new = x - excess * slope / chosen(steep != 0.0, steep, 1.0)
+    near, rising = abs(new - x) <= CLOSE, inside < outside
+    between = (chosen(rising, inside, outside) < new) & (new < chosen(rising, outside, inside))
+    new = chosen(near | between, new, 0.5 * (inside + outside))
+    return new, inside, outside, near | (new == x)
