@@ -142,7 +142,7 @@ def test_a_batch_of_open_arcs_is_those_one_by_one() -> None:
     for k, arc in enumerate(arcs):
         pair: Any = tuple(None if np.isnan(t[0]) else t for t in tangents[k])
         one = gs.interpolate(arc, closed=False, end_tangents=pair)
-        assert_allclose(found[k].spline.control_points, one.spline.control_points, atol=0)
+        assert_allclose(found.results()[k].spline.control_points, one.spline.control_points, atol=0)
         ends = one.spline(one.spline.knots[[0, -1]], derivative=1)
         assert_allclose(ends[0], tangents[k, 0], atol=1e-12)
 

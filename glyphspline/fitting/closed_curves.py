@@ -70,7 +70,7 @@ def recorded(points: FloatArray, options: Options, updates: Iterable[int]) -> Hi
     """
     offsets, found = np.array([0, len(points)]), {}
     for m in updates:
-        run = interpolated(points, offsets, replace(options, max_iterations=m))[0]
+        (run,) = interpolated(points, offsets, replace(options, max_iterations=m)).results()
         found[m] = run.spline.control_points, run.parameters
     return found
 

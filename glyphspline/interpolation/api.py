@@ -82,11 +82,15 @@ def interpolate(
         variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed,
         diagnostics,
     )  # fmt: skip
-    tangents = None if end_tangents is None else [end_tangents]
-    (result,) = interpolate_each([points], method, [knots] if own else None, tangents, 1, keep_points=True)
-    if isinstance(result, PolygonError):
-        raise result
-    return result
+    p = as_points(points)
+    given = _as_knots(knots, p, closed) if own else NO_KNOTS
+    ends = NO_TANGENTS if end_tangents is None else _as_ends([end_tangents], p, closed)
+    if method.readable:
+        return _readable(p, method, given if own else None, end_tangents)
+    found = interpolate_batch(Polygons(p, np.array((0, len(p))), given, ends), method, 1).first(p.copy())
+    if found is None:
+        raise explain(p, given if own else knots, closed)
+    return found
 
 
 @overload
@@ -160,8 +164,6 @@ def interpolate_each(
     Args:
         keep_points: whether results have a copy of their ``points``.
     """
-    if method.closed and tangents is not None and any(pair is not None for pair in tangents):
-        raise OptionError("end_tangents belong to an open arc (closed=False)")
     results: list[Any] = [None] * len(polygons)
     good: list[int] = []
     parts: list[FloatArray] = []
@@ -180,37 +182,36 @@ def interpolate_each(
         parts.append(p)
     if not good:
         return results
-    found: list[Any]
+    ends = _as_ends([tangents[k] for k in good], parts[0], method.closed) if tangents else NO_TANGENTS
     if method.readable:
-        found = [
-            _readable(parts[j], method, given[j] if given else None, tangents[k] if tangents else None, keep_points)
-            for j, k in enumerate(good)
-        ]
-    else:
-        alone = len(parts) == 1
-        polygons = Polygons(
-            parts[0] if alone else np.concatenate(parts),
-            np.array([0, *accumulate(map(len, parts))]),
-            np.concatenate(given) if given else NO_KNOTS,
-            as_tangents([tangents[k] for k in good], parts[0].shape[1]) if tangents else NO_TANGENTS,
-        )
-        points = (polygons.points.copy() if alone else polygons.points) if keep_points else None
-        found = interpolate_batch(polygons, method, threads).results(points)
+        for j, k in enumerate(good):
+            try:
+                results[k] = _readable(parts[j], method, given[j] if given else None, tangents[k] if tangents else None)
+            except PolygonError as error:
+                results[k] = error
+        return results
+    together = Polygons(
+        np.concatenate(parts), np.array([0, *accumulate(map(len, parts))]),
+        np.concatenate(given) if given else NO_KNOTS,
+        ends,
+    )  # fmt: skip
+    found = interpolate_batch(together, method, threads).results(together.points if keep_points else None)
     for j, k in enumerate(good):
         results[k] = found[j] or explain(parts[j], given[j] if given else method.knots, method.closed)
     return results
 
 
-def _readable(
-    p: FloatArray, method: Method, knots: FloatArray | None, tangents: Tangents | None, keep_points: bool
-) -> Interpolation | PolygonError:
+def _readable(p: FloatArray, method: Method, knots: FloatArray | None, tangents: Tangents | None) -> Interpolation:
     from .reference import interpolate_by  # not needed for what the kernels have
 
-    try:
-        result = interpolate_by(method, p, knots, tangents)
-    except PolygonError as error:
-        return error
-    return replace(result, points=np.delete(p, result.merged, axis=0)) if keep_points else result
+    result = interpolate_by(method, p, knots, tangents)
+    return replace(result, points=np.delete(p, result.merged, axis=0))
+
+
+def _as_ends(tangents: Sequence[Tangents | None], p: FloatArray, closed: bool) -> FloatArray:
+    if closed and any(pair is not None for pair in tangents):
+        raise OptionError("end_tangents belong to an open arc (closed=False)")
+    return as_tangents(tangents, p.shape[1])
 
 
 def _as_knots(knots: ArrayLike, p: FloatArray, closed: bool) -> FloatArray:

@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from ..types import IntArray
+from .found import room_for
 from .method import Method
 from .plain import interpolate
 from .polygon import Polygons
-from .result import BatchedInterpolation, room_for
+from .result import BatchedInterpolation
 
 LEAST_VERTICES = 1024
 """Minimum work of a thread at a time, some 0.3 ms: long compared with the cost of the exchange."""
@@ -32,14 +33,14 @@ def interpolate_batch(polygons: Polygons, method: Method, threads: int | None = 
     (total, d), offsets = polygons.points.shape, polygons.offsets
     if not method.closed and not len(polygons.tangents):
         polygons = polygons._replace(tangents=np.full((len(offsets) - 1, 2, d), np.nan))
-    room = room_for(total, len(offsets) - 1, method.closed, d)
+    numbers, whole = room_for(total, len(offsets) - 1, method.closed, d)
 
     def work(part: tuple[int, int]) -> Any:
-        return interpolate(*part, polygons, method.rule, *room)
+        return interpolate(*part, polygons, method.rule, numbers, whole)
 
-    residuals = over_threads(work, _parts(offsets, threads), threads)
-    joined = residuals[0] if len(residuals) == 1 else np.concatenate(residuals)
-    return BatchedInterpolation(offsets, d, method.closed, joined, room)
+    parts = _parts(offsets, threads)
+    residuals = work(parts[0]) if len(parts) == 1 else np.concatenate(over_threads(work, parts, threads))
+    return BatchedInterpolation(offsets, d, method.closed, residuals, numbers, whole)
 
 
 def _threads(threads: int | None) -> int:

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from ..compiled import inlined
 from ..curves.bspline import Spline
 from ..types import FloatArray, IntArray, counted
+from .found import Found, laid_out
 
 NOTHING_MERGED = np.empty(0, dtype=np.int64)
 
@@ -19,13 +18,14 @@ NOTHING_MERGED = np.empty(0, dtype=np.int64)
 class Unread:
     """What gets its fields when one is first read: a list of results costs little until then.
 
-    Until then ``_source`` is the batch that knows the fields, and what it needs to find them.
+    Until then ``_source`` is the batch that knows the fields, and where they are in it.
     """
 
     def __getattr__(self, name: str) -> Any:
         """A field that has no value yet."""
-        batch, *which = self.__dict__.get("_source", (None,))
-        if batch:
+        source = self.__dict__.get("_source")
+        if source:
+            batch, which = source
             self.__dict__.update(batch.fields(*which))
             self.__dict__.pop("_source", None)  # last: another thread may read the result, too
         try:
@@ -90,118 +90,89 @@ class Interpolation(Unread):
         return float(self.residuals[-1])
 
 
-class Found(NamedTuple):
-    """Results for K polygons with N vertices, which the compiled driver writes; parts as the polygons' ``offsets``.
-
-    Of polygon k the knots begin at its offset, plus k if closed; its control points at its offset, plus 2 k if open.
-    Where duplicates were merged, or a polygon was refused, the rest of its part is undefined.
-
-    Attributes:
-        knots, controls, parameters, bounds: as :class:`Interpolation` has them.
-        kept: indices of the vertices that were not merged.
-        whole: (K, 6) status (0 fine, 1 bad polygon, 2 bad knots), vertices kept, iterations, fallbacks, the
-            footpoints that took a full search, and those that are not certified.
-        rates, tolerances: (K,) rate bounds, and residual tolerances.
-    """
-
-    knots: FloatArray
-    controls: FloatArray
-    parameters: FloatArray
-    bounds: FloatArray
-    kept: IntArray
-    whole: IntArray
-    rates: FloatArray
-    tolerances: FloatArray
+Source: TypeAlias = tuple[int, int, int, Sequence[int], int, Any]
+"""Where the fields of a polygon's result are: the arguments of :meth:`BatchedInterpolation.fields`."""
 
 
-def room_for(total: int, count: int, closed: bool, d: int) -> tuple[FloatArray, IntArray]:
-    """The two arrays in which :func:`laid_out` finds a :class:`Found`: they are made and handed over in less time."""
-    numbers = total * (d + 4) + count * (3 if closed else 2 + 2 * d)
-    return np.empty(numbers), np.empty(total + 6 * count, np.int64)
-
-
-@inlined
-def laid_out(numbers: FloatArray, whole: IntArray, total: int, count: int, closed: bool, d: int) -> Found:
-    """Results for ``count`` polygons with ``total`` vertices in R^d, as views of arrays of :func:`room_for`."""
-    more, ends = total + count if closed else total, total if closed else total + 2 * count
-    a, b, c = 2 * count, 2 * count + more, 2 * count + more + total
-    return Found(
-        numbers[a:b], numbers[c + 2 * total :].reshape((ends, d)), numbers[b:c],
-        numbers[c : c + 2 * total].reshape((total, 2)), whole[6 * count :], whole[: 6 * count].reshape((count, 6)),
-        numbers[:count], numbers[count:a],
-    )  # fmt: skip
-
-
-@dataclass(frozen=True, eq=False)
-class BatchedInterpolation:
+class BatchedInterpolation(NamedTuple):
     """Results for K polygons as concatenated arrays; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
 
     Attributes:
         offsets: (K + 1,) of the points. dimension: d. closed: all polygons, or none.
-        residuals: (iterations + 1) numbers a polygon, end to end. room: what the ``arrays`` are views of.
+        residuals: (iterations + 1) numbers a polygon, end to end.
+        numbers, whole: what the :attr:`arrays` are views of.
     """
 
     offsets: IntArray
     dimension: int
     closed: bool
     residuals: FloatArray
-    room: tuple[FloatArray, IntArray]
+    numbers: FloatArray
+    whole: IntArray
 
-    def __len__(self) -> int:
-        return len(self.offsets) - 1
-
-    @cached_property
+    @property
     def arrays(self) -> Found:
         """The results."""
-        return laid_out(*self.room, int(self.offsets[-1]), len(self), self.closed, self.dimension)
+        total, count = int(self.offsets[-1]), len(self.offsets) - 1
+        return laid_out(self.numbers, self.whole, total, count, self.closed, self.dimension)
 
     @property
     def last_residuals(self) -> FloatArray:
         """(K,) the residuals of the results; undefined for polygons that were refused."""
         return self.residuals[np.cumsum(self.arrays.whole[:, 2] + 1) - 1]
 
-    def __getitem__(self, k: int) -> Interpolation:
-        """The result of polygon k; its arrays are views."""
-        k = range(len(self))[k]
-        whole = self.arrays.whole
-        return self._unread(k, whole[k].tolist(), int(whole[:k, 2].sum()) + k, None)
-
-    def results(self, points: FloatArray | None = None) -> list[Interpolation | None]:
+    def results(self, points: FloatArray | None = None) -> list[Any]:
         """All polygons' results, with views of the ``points`` (N, d) if given; None stands for one that was refused."""
-        found: list[Interpolation | None] = []
-        first, numbers = 0, self.room[1][: 6 * len(self)].tolist()
-        for k in range(len(self)):
-            row = numbers[6 * k : 6 * k + 6]
-            found.append(None if row[0] else self._unread(k, row, first, points))
-            first += row[2] + 1
+        found: list[Any] = []
+        for source in self._sources(points):
+            result = None if source[3][0] else Interpolation.__new__(Interpolation)
+            if result is not None:
+                result.__dict__["_source"] = self, source
+            found.append(result)
         return found
 
-    def _unread(self, *which: Any) -> Interpolation:
+    def first(self, points: FloatArray) -> Interpolation | None:
+        """The result of the first polygon, as of :meth:`results`."""
+        source = next(self._sources(points))
+        if source[3][0]:
+            return None
         result = Interpolation.__new__(Interpolation)
-        result.__dict__["_source"] = (self, *which)
+        result.__dict__.update(self.fields(*source))
         return result
 
-    def fields(self, k: int, row: Sequence[int], first: int, points: FloatArray | None) -> dict[str, Any]:
+    def _sources(self, points: FloatArray | None) -> Iterator[Source]:
+        """The arguments of :meth:`fields` for all polygons."""
+        offsets, rows, first = self.offsets.tolist(), self.whole[: 6 * len(self.offsets) - 6].tolist(), 0
+        for k in range(len(offsets) - 1):
+            row = rows[6 * k : 6 * k + 6]
+            yield k, offsets[k], offsets[k + 1], row, first, points
+            first += row[2] + 1
+
+    def fields(
+        self, k: int, start: int, stop: int, row: Sequence[int], first: int, points: FloatArray | None
+    ) -> dict[str, Any]:
         """The fields of the result of polygon k: what :attr:`arrays` has of it, without the arrays of the others.
 
         Args:
-            row: of ``Found.whole``, of a polygon that was not refused. first: where its residuals begin.
+            start, stop: its ``offsets``. row: of ``Found.whole``. first: where its residuals begin.
             points: (N, d) of all polygons, or None.
         """
-        (numbers, integers), count, closed, d = self.room, len(self), self.closed, self.dimension
-        start, stop, total = self.offsets[k : k + 2].tolist() + self.offsets[-1:].tolist()
+        offsets, d, closed, residuals, numbers, whole = self
+        count, total = len(offsets) - 1, (len(whole) - 6 * (len(offsets) - 1))
         _, n, iterations, fallbacks, _, uncertified = row
-        more, ends = (count, 0) if closed else (0, 2)
-        u, t = 2 * count + start + (k if closed else 0), 2 * count + more + total + start
-        b, P = t + total + start, 2 * count + more + 4 * total + (start + ends * k) * d
+        u, t, ends = 2 * count + start + k, 3 * count + total + start, 0
+        if not closed:
+            u, t, ends = u - k, t - count, 2
+        b, P = t + total + start, t + 3 * total - start + (start + ends * k) * d
         merged, own = NOTHING_MERGED, None if points is None else points[start:stop]
         if n < stop - start:
-            kept = integers[6 * count + start :][:n]
+            kept = whole[6 * count + start :][:n]
             merged, own = np.setdiff1d(np.arange(stop - start), kept), None if own is None else own[kept]
-        residuals = self.residuals[first : first + iterations + 1]
-        controls = numbers[P : P + (n + ends) * d].reshape(n + ends, d)
+        residuals = residuals[first : first + iterations + 1]
         return {
-            "spline": Spline.trusted(controls, numbers[u : u + n + closed], 3, closed),
+            "spline": Spline.trusted(
+                numbers[P : P + (n + ends) * d].reshape(n + ends, d), numbers[u : u + n + closed], 3, closed
+            ),
             "parameters": numbers[t : t + n],
             "intervals": numbers[b : b + 2 * n].reshape(n, 2),
             "iterations": iterations,

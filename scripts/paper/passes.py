@@ -29,7 +29,7 @@ class Passes:
         tangents = np.full((1, 2, q.shape[1]), np.nan) if pair is None else pair
         polygons = Polygons(q, offsets, tangents=tangents)
         batch = interpolate_batch(polygons, replace(method, max_iterations=0))
-        self.result, self.method, found = batch[0], method, batch.arrays
+        self.result, self.method, found = batch.results()[0], method, batch.arrays
         n = len(self.result.parameters)
         self.knots, bounds = np.resize(self.result.spline.knots, n), found.bounds.copy()
         bounds[:n] -= self.knots[:, None]

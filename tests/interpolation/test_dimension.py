@@ -123,7 +123,7 @@ def test_batches_are_of_one_dimension() -> None:
         many = gs.interpolate_many(polygons, closed=closed)
         for k, p in enumerate(polygons):
             alone = gs.interpolate(p, closed=closed)
-            for r in (many[k], batch[k]):
+            for r in (many[k], batch.results()[k]):
                 assert r.iterations == alone.iterations
                 np.testing.assert_array_equal(r.spline.control_points, alone.spline.control_points)
                 np.testing.assert_array_equal(r.parameters, alone.parameters)
@@ -164,9 +164,9 @@ def test_cusps_and_repeated_places_are_certified() -> None:
         batch = interpolate_batch(Polygons(p, np.array([0, len(p)])), Method(1, max_iterations=25))
         plain = interpolate_reference(p, 1, max_iterations=25)
         searched += int(batch.arrays.whole[0, 4])
-        assert batch[0].uncertified == 0
-        assert batch[0].iterations == plain.iterations
-        np.testing.assert_allclose(batch[0].residuals, plain.residuals, rtol=1e-6, atol=1e-9)
+        assert batch.results()[0].uncertified == 0
+        assert batch.results()[0].iterations == plain.iterations
+        np.testing.assert_allclose(batch.results()[0].residuals, plain.residuals, rtol=1e-6, atol=1e-9)
     assert searched > 0
 
 
@@ -189,7 +189,7 @@ def test_batches_take_knots_tangents_and_tolerances() -> None:
     batch = interpolate_batch(laid_out, Method(knots=None, closed=False, residual_tolerance=1e-4))
     for k, (p, u) in enumerate(zip(polygons, knots, strict=True)):
         plain = interpolate_reference(p, closed=False, knots=u, end_tangents=tangents[k], residual_tolerance=1e-4)
-        for r in (many[k], batch[k]):
+        for r in (many[k], batch.results()[k]):
             assert r.iterations == plain.iterations
             assert r.max_error < 1e-4
             np.testing.assert_allclose(r.spline.control_points, plain.spline.control_points, rtol=0, atol=1e-9)

@@ -62,7 +62,7 @@ def test_results_do_not_depend_on_batching(options: dict[str, Any]) -> None:
             assert together.arrays.whole[k].tolist() == alone.arrays.whole[0].tolist(), k
             if alone.arrays.whole[0, 0]:
                 continue
-            a, b = together[k], alone[0]
+            a, b = together.results()[k], alone.results()[0]
             assert a.rate_bound == b.rate_bound
             for x, y in (
                 (a.spline.control_points, b.spline.control_points),

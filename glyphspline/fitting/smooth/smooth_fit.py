@@ -320,8 +320,8 @@ class _Search:
             points[n], controls[n], pieces[n] = turned(points[n]), turned(controls[n]), pieces[n][::-1, ::-1]
 
         def arcs() -> list[Interpolation]:
-            each = zip(kept, flipped, strict=True)
-            return [reversed_interpolation(found.found[i]) if back else found.found[i] for (found, i), back in each]
+            results = [found.found.results()[i] for found, i in kept]
+            return [reversed_interpolation(r) if back else r for r, back in zip(results, flipped, strict=True)]
 
         solved = solved_columns([(found.found, np.array([i])) for found, i in kept])
         return ConvertedContours(

@@ -14,7 +14,7 @@ from ..method import RELATIVE_TOLERANCE, Rule
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX, Polygons
 from ..polygon import SMALLEST as SMALLEST_EXTENT
-from ..result import Found, laid_out
+from ..found import Found, laid_out
 from .footpoint import WORK
 from .lemma2 import LEAST, MISSING, ROOM, TOGETHER, arc_interval, set_intervals
 from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, one_pass, set_weights
