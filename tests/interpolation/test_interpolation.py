@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -253,12 +254,26 @@ def test_diagnostics_of_a_polygon_with_duplicates_are_those_without(knots: Any) 
 
 def test_a_result_is_a_plain_value() -> None:
     r = gs.interpolate(random_polygon(6, 2))
-    assert not hasattr(r, "__dict__")
     copy = pickle.loads(pickle.dumps(r))
     np.testing.assert_array_equal(copy.spline.control_points, r.spline.control_points)
     assert (copy.iterations, copy.converged, copy.max_error) == (r.iterations, r.converged, r.max_error)
     with pytest.raises(AttributeError):
         r.iterations = 3  # type: ignore[misc]
+    with pytest.raises(AttributeError, match="no attribute 'knots'"):
+        r.knots  # type: ignore[attr-defined]  # noqa: B018
+
+
+def test_results_of_a_list_are_made_when_read_and_leave_the_others_behind() -> None:
+    polygons = [random_polygon(6, seed) for seed in range(40)]
+    many = gs.interpolate_many(polygons)
+    assert "spline" not in vars(many[3])
+    assert len(pickle.dumps(many[3])) < 2 * len(pickle.dumps(gs.interpolate(polygons[3])))
+    assert set(vars(many[3])) == {field.name for field in fields(many[3])} - {
+        "history",
+        "rate_observed",
+        "spectral_radii",
+    }
+    assert pickle.loads(pickle.dumps(many[5])).rate_bound == gs.interpolate(polygons[5]).rate_bound
 
 
 @pytest.mark.parametrize("degree", [3, 5])
