@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -21,17 +21,19 @@ class Unread:
     Until then ``_source`` is the batch that knows the fields, and where they are in it.
     """
 
-    def __getattr__(self, name: str) -> Any:
-        """A field that has no value yet."""
-        source = self.__dict__.get("_source")
-        if source:
-            batch, which = source
-            self.__dict__.update(batch.fields(*which))
-            self.__dict__.pop("_source", None)  # last: another thread may read the result, too
-        try:
-            return self.__dict__[name]
-        except KeyError:
-            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}") from None
+    if not TYPE_CHECKING:  # or any name would pass for an attribute
+
+        def __getattr__(self, name: str) -> Any:
+            """A field that has no value yet."""
+            source = self.__dict__.get("_source")
+            if source:
+                batch, which = source
+                self.__dict__.update(batch.fields(*which))
+                self.__dict__.pop("_source", None)  # last: another thread may read the result, too
+            try:
+                return self.__dict__[name]
+            except KeyError:
+                raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}") from None
 
     def __getstate__(self) -> dict[str, Any]:
         """What is pickled: the fields, and not the whole batch."""

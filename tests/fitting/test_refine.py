@@ -51,7 +51,7 @@ def test_bounds_of_single_spans_are_never_below_the_distance(seed: int) -> None:
     offsets = np.array([0, len(places)])
     found = interpolated(steps.polygons(canonical, which, places, offsets), offsets, gs.Options(precision=2))
     pieces, written = (each[:, 0] for each in beziers(found.arrays.controls, found.arrays.knots, offsets, 100.0))
-    np.testing.assert_allclose(pieces, found[0].spline.to_bezier(), atol=1e-9)
+    np.testing.assert_allclose(pieces, found.results()[0].spline.to_bezier(), atol=1e-9)
     np.testing.assert_array_equal(written, np.round(pieces, 2))
     given = canonical, which, places, offsets, found.arrays.controls
     measured = steps.measured(*given, written[:, None], near)

@@ -260,7 +260,7 @@ def test_a_result_is_a_plain_value() -> None:
     with pytest.raises(AttributeError):
         r.iterations = 3  # type: ignore[misc]
     with pytest.raises(AttributeError, match="no attribute 'knots'"):
-        r.knots  # type: ignore[attr-defined]  # noqa: B018
+        r.knots  # type: ignore[attr-defined] # noqa: B018
 
 
 def test_results_of_a_list_are_made_when_read_and_leave_the_others_behind() -> None:

@@ -87,7 +87,7 @@ def _cross(R: FloatArray, m: int) -> None:
             break
 
 
-@compiled
+@inlined
 def simple(a: Real, b: Real, c: Real, d: Real, variant: int) -> tuple[Real, Real, Real]:
     """The interval of variant 0, 1 or 3 for a vertex among spans a, b, c and d, and the least value of B_i on it."""
     before, _, _, knot, _, _, after = coefficients(a, b, c, d)
@@ -135,7 +135,7 @@ def begin(
     )
 
 
-@compiled
+@inlined
 def finish(x: Real, y: Real, behind: Real, sign: Real, none: Real, b: Real, c: Real) -> tuple[Real, Real]:
     """The interval of a vertex between spans b and c: from its crossings, or, where there is none, the knot."""
     far, near = x, sign * y
@@ -306,14 +306,14 @@ def crossing(c0: float, c1: float, c2: float, c3: float, level: float, inside: f
     return x
 
 
-@compiled
+@inlined
 def powers(c0: Real, c1: Real, c2: Real, c3: Real, level: Real) -> tuple[Real, Real, Real, Real]:
     """A cubic in Bernstein form, less a level, by powers."""
     k1 = 3.0 * (c1 - c0)
     return c0 - level, k1, 3.0 * (c2 - c1) - k1, c3 - c0 + 3.0 * (c1 - c2)
 
 
-@compiled
+@inlined
 def halley(
     k0: Real, k1: Real, k2: Real, k3: Real, inside: Real, outside: Real, x: Real
 ) -> tuple[Real, Real, Real, Real]:
