@@ -93,9 +93,13 @@ def shared_scale(combs: Iterable[Comb], em: float) -> float:
     """
     every = list(combs)
     found = robust_scale(every)
-    largest = max([float(np.abs(item.curvature[bowls(item, em)]).max(initial=0.0)) for item in every], default=0.0)
     # Curvature of the sharpest bowl in units of the scale. At 1, other bowls of brush faces have hardly any teeth.
-    return max(found, largest / 2.0) if found else 0.0  # of lines, curvature is rounding
+    largest = 2.0 * found
+    for item in every if found else ():  # of lines, curvature is rounding
+        bent = np.abs(item.curvature)
+        if ((bent > largest) & (bent * em * LEAST <= 1)).any():
+            largest = float(bent[bowls(item, em)].max(initial=largest))
+    return largest / 2.0
 
 
 def bowls(item: Comb, em: float) -> BoolArray:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiled import compiled
+from ..compiled import compiled, inlined
 from ..curves.cubics import jet, turns
 from ..curves.integrals import area
 from ..types import BoolArray, FloatArray, IntArray
-from .contour_arrays import ContourArrays, offsets_of
+from .contour_arrays import ContourArrays
 from .segments import contour_cubics
 
 CHORDS = 4
@@ -26,12 +26,16 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
     """
     count = len(contours.offsets) - 1
     chords, starts = np.empty((CHORDS * len(contours.degrees), 2)), CHORDS * contours.offsets
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)  # corners of the boxes around chords
     for c in range(count):
         cubics = contour_cubics(contours, c)
         for j in range(len(cubics)):
             for k in range(CHORDS):
                 i = starts[c] + CHORDS * j + k
                 chords[i, 0], chords[i, 1], _, _, _, _ = jet(cubics, j, k / CHORDS)
+                for axis in range(2):
+                    low[c, axis] = min(low[c, axis], chords[i, axis])
+                    high[c, axis] = max(high[c, axis], chords[i, axis])
     sides = np.empty(count)
     for c in range(count):
         own = chords[starts[c] : starts[c + 1]]
@@ -42,16 +46,16 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
         for i in range(at, len(own), CHORDS):
             if own[i, 0] + own[i, 1] < own[at, 0] + own[at, 1]:
                 at = i
-        around = 0
+        x, y, around = own[at, 0], own[at, 1], 0
         for other in range(count):
-            if other != c:
-                around += winding(chords[starts[other] : starts[other + 1]], own[at, 0], own[at, 1])
+            if other != c and low[other, 0] <= x <= high[other, 0] and low[other, 1] <= y <= high[other, 1]:
+                around += winding(chords[starts[other] : starts[other + 1]], x, y)
         if around * sides[c] < 0.0:
             sides[c] = -sides[c]
     return sides
 
 
-@compiled
+@inlined
 def winding(polygon: FloatArray, x: float, y: float) -> int:
     """How often a closed polygon (n, 2) runs around a point, counter-clockwise."""
     found = 0
@@ -66,12 +70,19 @@ def winding(polygon: FloatArray, x: float, y: float) -> int:
     return found
 
 
+@compiled
 def corner_points(contours: ContourArrays, angle: float) -> tuple[FloatArray, IntArray]:
     """(k, 2) where the tangents turn by ``angle``, in radians, or more; (C + 1,) where those of each contour begin."""
-    chains = [contour_cubics(contours, c) for c in range(contours.num_contours if angle < np.inf else 0)]
-    found = [cubics[np.abs(turns(cubics, 0.0)) >= angle, 0] for cubics in chains]
-    counts = [len(points) for points in found] if found else np.zeros(contours.num_contours, dtype=np.int64)
-    return np.concatenate([np.empty((0, 2)), *found]), offsets_of(counts)
+    found, ends, k = np.empty((len(contours.degrees), 2)), np.zeros(len(contours.offsets), dtype=np.int64), 0
+    for c in range(len(ends) - 1):
+        if angle < np.inf and contours.offsets[c] < contours.offsets[c + 1]:
+            cubics = contour_cubics(contours, c)
+            turned = turns(cubics, 0.0)
+            for j in range(len(turned)):
+                if abs(turned[j]) >= angle:
+                    found[k, 0], found[k, 1], k = cubics[j, 0, 0], cubics[j, 0, 1], k + 1
+        ends[c + 1] = k
+    return found[:k], ends
 
 
 @compiled
@@ -81,10 +92,13 @@ def turned_about(corners: FloatArray, points: FloatArray, cut: BoolArray, near: 
     A curve turns about a corner if it has a point whose tooth would be ``cut`` within the distance ``near``; the turn
     is all that is within this distance.
     """
-    inside = np.zeros(len(points), dtype=np.bool_)
+    inside, sharp, square = np.zeros(len(points), dtype=np.bool_), np.flatnonzero(cut), near * near
     for k in range(len(corners)):
-        x, y = points[:, 0] - corners[k, 0], points[:, 1] - corners[k, 1]
-        close = x * x + y * y <= near * near
-        if np.any(close & cut):
-            inside |= close
+        turns_here = False
+        for j in sharp:
+            x, y = points[j, 0] - corners[k, 0], points[j, 1] - corners[k, 1]
+            turns_here = turns_here or x * x + y * y <= square
+        for i in range(len(points) if turns_here else 0):
+            x, y = points[i, 0] - corners[k, 0], points[i, 1] - corners[k, 1]
+            inside[i] = inside[i] or x * x + y * y <= square
     return inside

@@ -28,14 +28,14 @@ def there_and_back(points: FloatArray, degrees: IntArray) -> Path:
 def are_open(contours: ContourArrays) -> BoolArray:
     """(C,) which contours go along a path and back, from one of its ends on, point by point."""
     points, degrees, offsets, starts = contours
-    counts = np.diff(offsets)
-    found: BoolArray = (counts > 0) & (counts % 2 == 0)
-    likely = np.flatnonzero(found)
-    found[likely] = (points[starts[likely] + 1] == points[starts[likely + 1] - 1]).all(axis=1)
+    if not len(points):
+        return np.zeros(contours.num_contours, dtype=np.bool_)
+    second, last = (points.take(at, axis=0, mode="clip") for at in (starts[:-1] + 1, starts[1:] - 1))
+    found: BoolArray = (second[:, 0] == last[:, 0]) & (second[:, 1] == last[:, 1])
     for c in np.flatnonzero(found).tolist():
         own, kinds = points[starts[c] : starts[c + 1]], degrees[offsets[c] : offsets[c + 1]]
         back = np.array_equal(kinds, kinds[::-1]) and np.array_equal(own[1:], own[:0:-1])
-        found[c] = back and np.isfinite(own).all() and (own != own[0]).any()
+        found[c] = len(kinds) % 2 == 0 and back and np.isfinite(own).all() and (own != own[:1]).any()
     return found
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from abc import abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -81,8 +82,8 @@ class Ufo(EditableSource):
     def __init__(self, path: Path) -> None:
         self.path = path
         for file in _files(path):
-            if file.suffix == ".plist":
-                parsed(file.read_bytes())
+            if file.endswith(".plist"):
+                parsed(_content(file))
         self._reader = reader = UFOReader(path, validate=True)
         info = SimpleNamespace(familyName=None, styleName=None, unitsPerEm=None, ascender=None, descender=None)
         reader.readInfo(info)
@@ -105,7 +106,8 @@ class Ufo(EditableSource):
     @cached_property
     def cmap(self) -> Mapping[int, str]:  # type: ignore[override]
         """Code point to the first glyph that has it."""
-        return first_claims((name, self._claims(name)) for name in self.glyph_names)
+        files, folder = self.default_layer.contents, os.path.dirname(self.default_layer.fs.getsyspath("contents.plist"))
+        return first_claims((name, _claims(os.path.join(folder, files[name]))) for name in self.glyph_names)
 
     @cached_property
     def variations(self) -> Mapping[str, str]:  # type: ignore[override]
@@ -161,14 +163,6 @@ class Ufo(EditableSource):
             raise FontError("a glyph's file lies outside the UFO", glyph=outside[0])
         return glyphs
 
-    def _claims(self, name: str) -> list[int]:
-        """A glyph's code points; a broken one has none, and its error when it is read."""
-        try:
-            root = parsed(self.default_layer.getGLIF(name))
-            return [int(item.get("hex"), 16) for item in root.iter("unicode")]
-        except Exception:  # as in opening
-            return []
-
 
 class _Glyph(RecordingPointPen):  # type: ignore[misc, unused-ignore]
     """A glyph of a glyph set as ufoLib fills it in: a width, and the calls to a point pen."""
@@ -197,7 +191,7 @@ def components_of(masters: Iterable[GlyphSet]) -> dict[str, set[str]]:
     for glyphs in masters:
         for name in glyphs.contents:
             try:
-                parts = {item.get("base") for item in parsed(glyphs.getGLIF(name)).iter("component")}
+                parts = set(values(glyphs.getGLIF(name), "component", "base"))
             except Exception:  # as in opening
                 continue
             if parts:
@@ -205,15 +199,44 @@ def components_of(masters: Iterable[GlyphSet]) -> dict[str, set[str]]:
     return found
 
 
+def values(glif: bytes, element: str, attribute: str) -> list[str]:
+    """The attribute of each element of that name in a GLIF.
+
+    Most need no parser: without comments, sections, declarations and instructions, "<" begins an element wherever it
+    stands. Those that are written in another way than usual are parsed, in a hundred times as long.
+
+    Raises:
+        GlyphsplineError: it has to be parsed, and declares entities or is not XML.
+    """
+    if glif.startswith((b"<?xml ", b"<glyph")) and b"<!" not in glif and b"<?" not in glif[1:]:
+        found = re.findall(rf'<{element}\s+{attribute}="([^"&<\s\x80-\xff]*)"'.encode("latin-1"), glif)
+        if len(found) == glif.count(b"<" + element.encode()):
+            return [value.decode() for value in found]
+    return [item.get(attribute) for item in parsed(glif).iter(element)]
+
+
+def _claims(file: str) -> list[int]:
+    """The code points of the glyph in a file; a broken one has none, and its error when it is read."""
+    try:
+        return [int(value, 16) for value in values(_content(file), "unicode", "hex")]
+    except Exception:  # as in opening
+        return []
+
+
 def folder_bytes(folder: Path) -> Iterator[bytes]:
     """All files of a folder with their names, for a checksum."""
     for file in _files(folder):
-        content = file.read_bytes()
-        yield f"{file.relative_to(folder).as_posix()}\0{len(content)}\0".encode() + content
+        content, name = _content(file), file.removeprefix(str(folder)).lstrip(os.sep).replace(os.sep, "/")
+        yield f"{name}\0{len(content)}\0".encode() + content
 
 
-def _files(folder: Path) -> Iterator[Path]:
+def _files(folder: Path) -> Iterator[str]:
     """All files of a folder in a fixed order, without following links to folders."""
     for here, folders, files in os.walk(folder):
         folders.sort()
-        yield from (Path(here, file) for file in sorted(files))
+        yield from (os.path.join(here, file) for file in sorted(files))
+
+
+def _content(file: str) -> bytes:
+    with open(file, "rb") as opened:
+        return opened.read()

@@ -6,6 +6,7 @@ import pickle
 import shutil
 from pathlib import Path
 from types import SimpleNamespace
+from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
@@ -184,6 +185,42 @@ def test_a_broken_glyph_costs_only_itself(folder: Path, text: str) -> None:
     for broken in ("square", "pair"):  # which has it as a component
         with pytest.raises(GlyphsplineError, match=rf"Small\.ufo, glyph '{broken}': "):
             ufo.outline(broken)
+
+
+BEGIN, END = '<?xml version="1.0"?>\n<glyph name="square" format="2">', "</glyph>"
+A, D = '<unicode hex="0041"/>', '<unicode hex="44" />'
+
+
+@pytest.mark.parametrize(
+    ("inside", "codes"),
+    [
+        (f"{A}<outline/>{D}", "AD"),
+        (f"<outline/>\n{D}\n<advance width='5'/>{A}", "DA"),
+        (f"<!-- {A} -->{D}", "D"),
+        (f"{D}<note><![CDATA[{A}]]></note>", "D"),
+        (f"<note>&lt;unicode hex=\"41\"/> '{A[1:-1]}'</note>{D}", "D"),
+        (f"<?tool {A}?>{D}", "D"),
+        ("<unicode\n  hex = '41'></unicode>", "A"),
+        ('<unicode hex="004&#x31;"/>', "A"),
+        (f"{D}<lib><dict><key>unicodes</key><string>>{A[1:]}</string></dict></lib>", "D"),
+        ("<unicodes hex='41'/>", ""),
+    ],
+)
+@pytest.mark.parametrize("coding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_code_points_are_those_that_a_parser_finds(folder: Path, inside: str, codes: str, coding: str) -> None:
+    document = (BEGIN + inside + END).encode(coding)
+    (folder / "glyphs" / "square.glif").write_bytes(document)
+    found = [chr(code) for code, name in Ufo.opened(folder).cmap.items() if name == "square"]
+    assert found == list(codes) == [chr(int(each.get("hex", ""), 16)) for each in fromstring(document).iter("unicode")]
+
+
+def test_components_are_those_that_a_parser_finds(folder: Path) -> None:
+    assert Ufo.opened(folder).components() == {
+        "pair": {"_part", "square"}, "alone": {"_part", "square"}, "loop": {"loop"}, "lost": {"nowhere"},
+    }  # fmt: skip
+    text = '<outline><component xScale=\'2\' base="curves"/><!-- <component base="no"/> --></outline>'
+    (folder / "glyphs" / "square.glif").write_text(BEGIN + text + END)
+    assert Ufo.opened(folder).components()["square"] == {"curves"}
 
 
 @pytest.mark.parametrize("key", ["unitsPerEm", "ascender", "descender"])

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor
-from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from contextlib import AbstractContextManager, nullcontext, suppress
+from dataclasses import dataclass, field, replace
 from functools import cache
 from hashlib import blake2b
 from itertools import pairwise
@@ -39,6 +39,9 @@ from .finding import Finding, Measured, findings, severity
 
 STEPS = 8
 """Steps of each axis of a variable font, at whose ends its glyphs are checked besides the masters."""
+
+BASELINE = (0.0,)
+"""The height at which points are aligned in every font."""
 
 
 class Checked(NamedTuple):
@@ -73,7 +76,7 @@ class CheckJob(Job[Head, Checked]):
     thresholds: Thresholds
     kinds: frozenset[str]
     outer: int
-    heights: tuple[float, ...]
+    heights: tuple[float, ...] = BASELINE
 
     joints = False
 
@@ -120,9 +123,9 @@ class AxesJob(CheckJob):
     ``joints``: all smooth joints are part of the result.
     """
 
-    axes: tuple[str, ...]
-    steps: int
-    joints: bool
+    axes: tuple[str, ...] = ()
+    steps: int = STEPS
+    joints: bool = False
 
     chunk = 8
 
@@ -138,7 +141,7 @@ class AxesJob(CheckJob):
         """As for a font where it is open, at the worst place of each finding; heights but the baseline move."""
         found: tuple[Measured, Sequence[Any]] = service("on_axes")(
             glyphs, dict(self.place[2]), self.axes, self.steps, self.thresholds, self.outer,
-            heights=self.heights[:1],
+            heights=self.heights,
         )  # fmt: skip
         return found
 
@@ -270,14 +273,14 @@ def check_font(
     if unknown := [name for name in names if name not in source.gids]:
         raise FontError("the font has no such glyph", font=str(source.path), glyph=unknown[0])
     tasks = list(heads_of(source, names).values())
-    job = CheckJob(place_of(source), asked.thresholds, asked.kinds, source.outer, heights_of(source))
-    if chosen:
-        job = AxesJob(job.place, job.thresholds, job.kinds, job.outer, job.heights, chosen, asked.steps, asked.joints)
+    of_font = place_of(source), asked.thresholds, asked.kinds, source.outer
+    job = AxesJob(*of_font, BASELINE, chosen, asked.steps, asked.joints) if chosen else CheckJob(*of_font)
 
     def glyphs() -> Iterator[GlyphFindings]:
         reported = Shapes()
         with workers(0, executor=executor) as pool:
-            for part in run(job, tasks, pool, ordered=True, observer=observer):
+            here = job if chosen else replace(job, heights=heights_in(pool, job))
+            for part in run(here, tasks, pool, ordered=True, observer=observer):
                 rows, numbers, shapes, scores, along, error, parts = part.result
                 again = Counter[str]()
                 if once:
@@ -295,14 +298,23 @@ def check_font(
     return glyphs()
 
 
-def heights_of(source: Source) -> tuple[float, ...]:
-    """Heights of baseline, x-height and cap height, as far as the font has them."""
+def heights_in(pool: Executor, job: CheckJob) -> tuple[float, ...]:
+    """:func:`heights_of` the font of a job, by a worker, which has loaded what reads outlines."""
+    with suppress(GlyphsplineError):  # the letter that has the height is broken, or ends its worker: it is said of it
+        return tuple(pool.submit(heights_of, job).result())
+    return BASELINE
+
+
+def heights_of(job: CheckJob) -> tuple[float, ...]:
+    """Heights of baseline, x-height and cap height, as far as the font has them.
+
+    Raises:
+        GlyphsplineError: x or H is broken.
+    """
+    (source,) = sources(job.place)
     if source.each_its_em:
-        return (0.0,)
-    try:
-        return tuple(dict.fromkeys([0.0, *(each for each in (source.x_height, source.cap_height) if each)]))
-    except GlyphsplineError:  # the letter that has the height is broken, which is said of it
-        return (0.0,)
+        return BASELINE
+    return tuple(dict.fromkeys([*BASELINE, *(each for each in (source.x_height, source.cap_height) if each)]))
 
 
 @dataclass

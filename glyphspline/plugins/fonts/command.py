@@ -15,7 +15,6 @@ from ...cli.messages import print_json, say, stop
 from ...cli.tables import runs_facts, runs_table
 from ...fields import WRITTEN, About
 from ...hooks import service
-from .refit import em_of, kept, own_format
 from .spec import RefitSpec
 
 if TYPE_CHECKING:
@@ -53,6 +52,7 @@ def refit(
     within the tolerance stays as it is; what was not done ends the command with status 1.
     """
     from ...runs.font_search import find_fonts
+    from .refit import em_of, kept, own_format
 
     found = find_fonts(sources)
     if not found:

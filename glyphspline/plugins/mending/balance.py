@@ -10,6 +10,7 @@ What comes out is put on the grid, handle by handle and master by master, each w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -304,11 +305,10 @@ class FreePoints:
 
 def _basis(degree: int) -> tuple[FloatArray, FloatArray]:
     """(T, degree + 1) Bernstein polynomials at the samples, and their derivatives."""
-    from scipy.special import comb
 
     def values(n: int) -> FloatArray:
-        k = np.arange(n + 1)
-        return np.asarray(comb(n, k) * SAMPLES[:, None] ** k * (1 - SAMPLES[:, None]) ** (n - k), dtype=np.float64)
+        k, choices = np.arange(n + 1), np.array([math.comb(n, k) for k in range(n + 1)], dtype=np.float64)
+        return choices * SAMPLES[:, None] ** k * (1 - SAMPLES[:, None]) ** (n - k)
 
     return values(degree), degree * values(degree - 1) @ np.diff(np.eye(degree + 1), axis=0)
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ...errors import OutputError
+from ...errors import GlyphsplineError, OutputError
 from ...files import writing
 from ...outlines.flaws.kinds import MENDED_UNASKED, THRESHOLDS, Thresholds
 from ...outlines.masters import Masters
@@ -19,7 +19,7 @@ from ...runs.schedule import Place, heads_of, place_of, sources, workers
 from ...runs.spec import LIMITS
 from ...types import Head
 from .fewer import EDITED
-from .mend import check_kinds, mended
+from .mend import ANYWHERE, check_kinds, mended
 from .state import Change, Into, Tally
 from .users import MendedGlyph, spoiling, write
 
@@ -56,22 +56,28 @@ class MendJob(Job[Head, list[Mended]]):
     asked: Scope
     outer: int
 
-    chunk = 8
-    budget = 20_000
+    budget = 5_000
+    """Points in masters that are looked at together: some ten glyphs of a variable text face."""
+
+    def read(self, tasks: Sequence[Head]) -> Sequence[Item | Exception]:
+        """Glyphs in all their masters; those of a source without axes are read together."""
+        (source,) = sources(self.place)
+        if source.axes:
+            return super().read(tasks)
+        found = source.read(tasks)
+        return [each if isinstance(each, GlyphsplineError) else _item(Masters.of(each)) for each in found]
 
     def item(self, task: Head) -> Item | Exception:
-        """A glyph in all its masters, with the contours that it does not draw itself."""
+        """A glyph in all its masters."""
         (source,) = sources(self.place)
-        masters = source.masters(task[0])
-        points = sum(contour.points.shape[1] for contour in masters.contours)
-        error = LIMITS.error_of(sum(map(len, masters.contours)))
-        return error or Item((masters, into_of(source, masters)), len(masters) * points)
+        return _item(source.masters(task.name))
 
     def together(self, tasks: Sequence[Head], contents: Sequence[Any]) -> list[Mended]:
-        """Mend glyphs."""
+        """Mend glyphs. What the source allows is looked up of those alone that have something to mend."""
+        (source,) = sources(self.place)
         (kinds, tolerance, thresholds), found = self.asked, []
-        states = Tally.of_many([masters for masters, _ in contents], thresholds, self.outer)
-        for (masters, into), state in zip(contents, states, strict=True):
+        for masters, state in zip(contents, Tally.of_many(contents, thresholds, self.outer), strict=True):
+            into = into_of(source, masters) if state.has(kinds) else ANYWHERE
             new, changes = mended(masters, state, kinds, tolerance, thresholds, self.outer, into)
             moved = None if new is masters else new
             found.append(Mended(masters if moved else None, moved, [c for c in changes if c.why != OF_COMPONENT]))
@@ -80,6 +86,11 @@ class MendJob(Job[Head, list[Mended]]):
     def failed(self, task: Head, error: Exception) -> list[Mended]:
         """Why a glyph could not be mended."""
         return [Mended(None, None, (), reason(error))]
+
+
+def _item(masters: Masters) -> Item | Exception:
+    points = sum(contour.points.shape[1] for contour in masters.contours)
+    return LIMITS.error_of(sum(map(len, masters.contours))) or Item(masters, len(masters) * points)
 
 
 def into_of(source: Any, masters: Masters) -> Into:

@@ -89,7 +89,7 @@ def mended(
 ) -> tuple[Masters, list[Change]]:  # fmt: skip
     """As :func:`mend`; ``state``: what is found in it. ``into``: what it goes back into."""
     tolerance = PER_EM * masters.metrics.units_per_em if tolerance is None else tolerance
-    if not any(state.values[kind] for kind in kinds):
+    if not state.has(kinds):
         return masters, []
     glyph = _Glyph(masters, Design.of(masters, tolerance, thresholds, into.step), thresholds, outer, into)
     new, changes = masters, []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -88,6 +88,10 @@ class Tally:
         columns = rows.kinds, rows.contours, rows.segments, rows.numbers[:, 1]
         for what, c, s, value in zip(*(column.tolist() for column in columns), strict=True):
             self.values[KINDS[what].name].setdefault((c, s), value)
+
+    def has(self, kinds: Collection[str]) -> bool:
+        """Whether there is a finding of one of these kinds."""
+        return any(self.values[kind] for kind in kinds)
 
     @classmethod
     def of(cls, masters: Masters, thresholds: Thresholds, outer: int) -> Tally:

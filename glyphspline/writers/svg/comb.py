@@ -126,20 +126,19 @@ def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
 
 
 def sides_and_corners(
-    glyph: GlyphResult, whose: Whose = "result", *, in_corners: bool = False
+    glyph: GlyphResult, opened: BoolArray, whose: Whose = "result", *, in_corners: bool = False
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """(C,) sides of the ink, 1.0 of open paths, which have none; (k, 2) corners in whose turn teeth have no length,
     (C + 1,) where each contour's begin.
 
     Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
-    curvatures.
+    curvatures. ``opened``: (C,) which contours are open paths.
     """
     from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
 
     turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
     corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
-    curves = curves_of(glyph, whose)
-    return np.where(are_open(curves), 1.0, ink_sides(curves)), corners, offsets
+    return np.where(opened, 1.0, ink_sides(curves_of(glyph, whose))), corners, offsets
 
 
 def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
@@ -149,8 +148,9 @@ def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corne
     back, so that a line through their tips is closed.
     """
     em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
-    sides, corners, offsets = sides_and_corners(glyph, whose, in_corners=in_corners)
-    found, opened = [], are_open(curves)
+    opened = are_open(curves)
+    sides, corners, offsets = sides_and_corners(glyph, opened, whose, in_corners=in_corners)
+    found = []
     for item, c in zip(combs(glyph, 1.0, whose), np.flatnonzero(np.diff(curves.offsets)).tolist(), strict=True):
         own = teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])
         found.append(own.there_and_back() if opened[c] else own)

@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import astuple
 from functools import lru_cache
 from html import escape
 from typing import NamedTuple
@@ -224,7 +223,7 @@ def code_points(outline: Outline) -> str:
 
 def data_attributes(outline: Outline, precision: int) -> str:
     """The glyph's identity and horizontal metrics as ``data-*`` attributes."""
-    em, ascender, descender = astuple(outline.metrics)
+    em, ascender, descender = outline.metrics.units_per_em, outline.metrics.ascender, outline.metrics.descender
     values = {"advance": outline.advance, "units-per-em": em, "ascender": ascender, "descender": descender}
     numbers = "".join([f' data-{key}="{number(value, precision)}"' for key, value in values.items()])
     return (

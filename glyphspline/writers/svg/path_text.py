@@ -47,13 +47,12 @@ def write_number(text: Text, at: int, number: float, precision: int) -> int:
     that has a point too, or a space.
     """
     value, decimals = int(abs(number)), precision
-    while decimals and value % 10 == 0:
-        value //= 10
-        decimals -= 1
-    width, rest = 1, value // 10
-    while rest:
-        width += 1
-        rest //= 10
+    rest = value // 10
+    while decimals and value == 10 * rest:
+        value, rest, decimals = rest, rest // 10, decimals - 1
+    width, power = 1, 10
+    while power <= value:
+        width, power = width + 1, 10 * power
     if number < 0.0:
         text[at] = 45  # a minus
         at += 1
@@ -67,8 +66,9 @@ def write_number(text: Text, at: int, number: float, precision: int) -> int:
             k -= 1
             text[k] = 46  # a point
         k -= 1
-        text[k] = 48 + value % 10
-        value //= 10
+        rest = value // 10
+        text[k] = 48 + (value - 10 * rest)
+        value = rest
     if decimals and width == decimals:
         text[k - 1] = 46
     return at
@@ -226,19 +226,27 @@ def comb_teeth(
         for i in range(len(own)):
             strength = 0.0 if hidden[i] else own[i, CURVATURE] * inverse
             reach = TOOTH * em * min(max(strength, -LONGEST), LONGEST)
-            ends[k, 0], ends[k, 1] = np.floor(own[i, X] * power + half), np.floor(own[i, Y] * power + half)
-            ends[k, 2] = np.floor((own[i, X] - reach * own[i, NX]) * power + half)
-            ends[k, 3] = np.floor((own[i, Y] - reach * own[i, NY]) * power + half)
-            if k > offsets[c] and (ends[k] == ends[k - 1]).all():
+            x, y = np.floor(own[i, X] * power + half), np.floor(own[i, Y] * power + half)
+            tip_x = np.floor((own[i, X] - reach * own[i, NX]) * power + half)
+            tip_y = np.floor((own[i, Y] - reach * own[i, NY]) * power + half)
+            if k > offsets[c] and _is_tooth(ends, k - 1, x, y, tip_x, tip_y):
                 continue
+            ends[k, 0], ends[k, 1], ends[k, 2], ends[k, 3] = x, y, tip_x, tip_y
             cut[k], classes[k] = abs(strength) > LONGEST, -1
-            if min(abs(strength), LONGEST) > least and (ends[k, 0] != ends[k, 2] or ends[k, 1] != ends[k, 3]):
+            if min(abs(strength), LONGEST) > least and (x != tip_x or y != tip_y):
                 classes[k] = SIDES + np.int64(np.rint(min(max(sides[c] * strength, -1.0), 1.0) * SIDES))
             k += 1
-        if k > offsets[c] + 1 and (ends[k - 1] == ends[offsets[c]]).all():
+        j = offsets[c]
+        if k > j + 1 and _is_tooth(ends, k - 1, ends[j, 0], ends[j, 1], ends[j, 2], ends[j, 3]):
             k -= 1  # the contour is closed
         offsets[c + 1] = k
     return ends[:k], classes[:k], cut[:k], offsets
+
+
+@inlined
+def _is_tooth(ends: FloatArray, k: int, x: float, y: float, tip_x: float, tip_y: float) -> bool:
+    """Whether tooth k has this foot and this tip."""
+    return bool(ends[k, 0] == x and ends[k, 1] == y and ends[k, 2] == tip_x and ends[k, 3] == tip_y)
 
 
 @compiled
@@ -253,14 +261,17 @@ def comb_text(ends: FloatArray, classes: IntArray, offsets: IntArray, precision:
     """
     layers = 2 * SIDES + 1
     text, parts = np.empty(4 * len(ends) * (WIDEST + 2 * precision), np.uint8), np.zeros(layers + 2, np.int64)
+    following, firsts = np.empty(len(ends), np.int64), np.full(layers + 1, -1)  # the next tooth of a class; the first
+    for i in range(len(ends) - 1, -1, -1):
+        following[i], firsts[classes[i]] = firsts[classes[i]], i
     at = 0
     for layer in range(layers):
-        x, y, letter = 0.0, 0.0, MOVE
-        for i in range(len(ends)):
-            if classes[i] == layer:
-                at = write_pair(text, at, letter, ends[i, 0] - x, ends[i, 1] - y, precision)
-                x, y, letter = ends[i, 2], ends[i, 3], MOVE_BY
-                at = write_pair(text, at, LINE_BY, x - ends[i, 0], y - ends[i, 1], precision)
+        x, y, letter, i = 0.0, 0.0, MOVE, firsts[layer]
+        while i >= 0:
+            at = write_pair(text, at, letter, ends[i, 0] - x, ends[i, 1] - y, precision)
+            x, y, letter = ends[i, 2], ends[i, 3], MOVE_BY
+            at = write_pair(text, at, LINE_BY, x - ends[i, 0], y - ends[i, 1], precision)
+            i = following[i]
         parts[layer + 1] = at
     x, y, letter = 0.0, 0.0, MOVE
     for c in range(len(offsets) - 1):

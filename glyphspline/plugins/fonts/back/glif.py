@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from xml.parsers import expat
-from xml.sax.saxutils import quoteattr
 
 from ....readers.source import parsed
 from .nodes import Node, Position
@@ -44,6 +43,8 @@ class Glif:
         parser.Parse(data, True)
 
     def _begin(self, name: str, given: dict[str, str]) -> None:
+        from xml.sax.saxutils import quoteattr  # here and not above: with it comes what speaks HTTP
+
         self._open.append(name)
         if self._open == ["glyph", "anchor"]:
             self.anchors.add((float(given["x"]), float(given["y"])))

@@ -9,7 +9,6 @@ import numpy as np
 from fontTools.ttLib import TTFont
 from fontTools.ttLib.tables._g_l_y_f import GlyphCoordinates
 from fontTools.ttLib.tables.TupleVariation import TupleVariation
-from fontTools.varLib.iup import iup_delta
 
 from ....outlines.masters import MasterContour, Masters, quadratics
 from ....types import BoolArray, FloatArray, IntArray
@@ -118,6 +117,8 @@ def given_deltas(old: Deltas, changed: BoolArray, steps: IntArray, wanted: Float
         old: as they were. changed: (n,) points that moved. steps, wanted: (n, 2) deltas, rounded and not.
         points: (n, 2) of the default.
     """
+    from fontTools.varLib.iup import iup_delta  # here and not above: with it comes all of varLib
+
     whole = [(int(x), int(y)) for x, y in steps.tolist()]
     found: Deltas = [new if moved else was for was, new, moved in zip(old, whole, changed.tolist(), strict=True)]
     every = [*map(tuple, points.tolist()), *[(0, 0)] * PHANTOMS]

@@ -23,7 +23,6 @@ from fontTools.fontBuilder import FontBuilder
 from fontTools.misc.psCharStrings import T2WidthExtractor
 from fontTools.pens.basePen import NullPen
 from fontTools.ttLib import TTFont, newTable
-from fontTools.varLib.instancer import instantiateVariableFont
 
 from ....errors import FontError, GlyphsplineError
 from ....extras import need
@@ -419,6 +418,8 @@ def base_tables(source: Source) -> TTFont:
     if "glyf" not in font and "CFF " not in font and "CFF2" not in font:
         raise FontError("has no outlines that could be replaced", font=str(source.path))
     if source.axes:
+        from fontTools.varLib.instancer import instantiateVariableFont  # here and not above: it imports all of varLib
+
         at = {axis.tag: source.location.get(axis.tag, axis.default) for axis in source.axes}
         font = instantiateVariableFont(font, at, inplace=True)
     drop(font, *HINTS, *PICTURES, *SPENT)

@@ -17,7 +17,6 @@ from fontTools.ttLib.tables.TupleVariation import (
     decompileSharedTuples,
     decompileTupleVariationStore,
 )
-from fontTools.varLib.iup import iup_delta
 
 from ....outlines.masters import Masters
 from ....types import FloatArray
@@ -64,6 +63,8 @@ class GlyphRecord:
 
     def in_masters(self, coordinates: Sequence[Any], deltas: Sequence[Sequence[Any]]) -> FloatArray:
         """(K, n, 2) points of all masters, phantoms too, with other coordinates and deltas; None: to be inferred."""
+        from fontTools.varLib.iup import iup_delta  # here and not above: with it comes all of varLib
+
         steps = np.zeros((len(self.masters), len(coordinates), 2))
         steps[0] = coordinates
         for k, own in zip(self.numbers, deltas, strict=True):
