@@ -9,7 +9,7 @@ from ..curves.cubics import jet, turns
 from ..curves.integrals import area
 from ..types import BoolArray, FloatArray, IntArray
 from .contour_arrays import ContourArrays
-from .segments import contour_cubics
+from .segments import all_cubics, contour_cubics
 
 CHORDS = 4
 """Chords a segment for which a point counts as inside or outside."""
@@ -24,32 +24,32 @@ def ink_sides(contours: ContourArrays) -> FloatArray:
     the counter of a clockwise one, where the others wind the other way round it. That is looked at in the middle of one
     segment, whichever point the contour begins at: contours may share ends of segments.
     """
-    count = len(contours.offsets) - 1
-    chords, starts = np.empty((CHORDS * len(contours.degrees), 2)), CHORDS * contours.offsets
-    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)  # corners of the boxes around chords
+    count, offsets, cubics = len(contours.offsets) - 1, contours.offsets, all_cubics(contours)
+    chords, known, sides = np.empty((CHORDS * len(cubics), 2)), np.zeros(count, dtype=np.bool_), np.empty(count)
+    low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)  # corners of boxes around contours
     for c in range(count):
-        cubics = contour_cubics(contours, c)
-        for j in range(len(cubics)):
-            for k in range(CHORDS):
-                i = starts[c] + CHORDS * j + k
-                chords[i, 0], chords[i, 1], _, _, _, _ = jet(cubics, j, k / CHORDS)
+        for j in range(offsets[c], offsets[c + 1]):
+            for k in range(4):
                 for axis in range(2):
-                    low[c, axis] = min(low[c, axis], chords[i, axis])
-                    high[c, axis] = max(high[c, axis], chords[i, axis])
-    sides = np.empty(count)
+                    low[c, axis] = min(low[c, axis], cubics[j, k, axis])
+                    high[c, axis] = max(high[c, axis], cubics[j, k, axis])
     for c in range(count):
-        own = chords[starts[c] : starts[c + 1]]
-        sides[c] = -1.0 if area(contour_cubics(contours, c)) < 0.0 else 1.0
-        if len(own) == 0:
-            continue
-        at = CHORDS // 2
-        for i in range(at, len(own), CHORDS):
-            if own[i, 0] + own[i, 1] < own[at, 0] + own[at, 1]:
-                at = i
-        x, y, around = own[at, 0], own[at, 1], 0
+        own = cubics[offsets[c] : offsets[c + 1]]
+        sides[c] = -1.0 if area(own) < 0.0 else 1.0
+        x = y = np.inf
+        for j in range(len(own)):
+            px, py, _, _, _, _ = jet(own, j, 0.5)
+            if px + py < x + y:
+                x, y = px, py
+        around = 0
         for other in range(count):
-            if other != c and low[other, 0] <= x <= high[other, 0] and low[other, 1] <= y <= high[other, 1]:
-                around += winding(chords[starts[other] : starts[other + 1]], x, y)
+            if other == c or not (low[other, 0] <= x <= high[other, 0] and low[other, 1] <= y <= high[other, 1]):
+                continue
+            first, last = CHORDS * offsets[other], CHORDS * offsets[other + 1]
+            for i in range(last if known[other] else first, last):
+                chords[i, 0], chords[i, 1], _, _, _, _ = jet(cubics, i // CHORDS, i % CHORDS / CHORDS)
+            known[other] = True
+            around += winding(chords[first:last], x, y)
         if around * sides[c] < 0.0:
             sides[c] = -sides[c]
     return sides

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cache, lru_cache
 from itertools import pairwise
 from math import floor
-from textwrap import wrap
 
 import numpy as np
 
@@ -103,7 +102,7 @@ def write_map(
         scale = maps.scale_for(em) or curvature_scale([glyph])
     precision = comb_precision(em)
     path = path or curves_data(curves_of(glyph, whose), glyph.options.precision)[0]
-    layers, box, cut, corners = _comb(glyph, scale, combs, maps.corner_teeth, precision)
+    layers, box, cut, corners = _comb(glyph, scale, maps, precision, not path.strokes)
     box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
     kind = "outline" if whose == "result" else "source"
     layers.append(
@@ -131,7 +130,7 @@ def write_map(
     measured = arrays.measures.get("max_curvature", ()) if whose == "result" else ()
     known = [each for each in measured if each is not None]
     words = legend(combs, cut, scale * em, corners, max(known) * em if known else None)
-    lines = wrap(f"κ{words}", max(int(width / (ADVANCE * letters)), 1), break_on_hyphens=False)
+    lines = _lines(f"κ{words}", int(width / (ADVANCE * letters)))
     said = [_words(0.0, -2.75 - 1.4 * k, "start", line, letters, precision) for k, line in enumerate(lines)]
     height, margin = (3.1 + 1.4 * (len(lines) - 1)) * letters, 0.02 * em
     left, base = box[0], box[1] - (0.06 + TOOTH) * em
@@ -151,23 +150,25 @@ def write_map(
 
 
 def _comb(
-    glyph: GlyphResult, scale: float, combs: Combs, in_corners: bool, precision: int
+    glyph: GlyphResult, scale: float, maps: Maps, precision: int, closed: bool
 ) -> tuple[list[str], Box | None, int, int]:
     """The comb's paths, the box around curves and combs, and the numbers of teeth that are cut and of corners without.
 
     Paths are teeth by colour class, the line of tips and marks of cut teeth; of the source of both, the line alone.
+    ``closed``: no contour shown is an open path.
     """
     from .path_text import LARGEST, comb_teeth, comb_text, dots_text  # here: the package opens without a compiler
 
-    em, unit = glyph.outline.metrics.units_per_em, 10.0**precision
+    em, unit, combs = glyph.outline.metrics.units_per_em, 10.0**precision, maps.comb
     least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
     layers, box = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None
     number_cut = corners = 0
     wanted: tuple[Whose, ...] = ("result", "source") if combs == "both" else (shown_by(combs),)
     for whose in wanted:
         curves = curves_of(glyph, whose)
-        opened = are_open(curves)
-        marks = sides_and_corners(glyph, opened, whose, in_corners=in_corners)
+        is_closed = closed and whose == shown_by(combs)
+        opened = np.zeros(curves.num_contours, dtype=np.bool_) if is_closed else are_open(curves)
+        marks = sides_and_corners(glyph, opened, whose, in_corners=maps.corner_teeth)
         curves = paths(curves, opened)
         ends, classes, cut, offsets = comb_teeth(curves, *marks, float(em), float(scale), least, precision)
         if not len(ends):
@@ -224,6 +225,18 @@ def _axis(em: float, scale: float, precision: int, width: float, letters: float)
         + f'<g fill="currentColor" font-family="sans-serif" font-size="{number(letters, precision)}">'
         + "".join(texts)
     )
+
+
+def _lines(words: str, most: int) -> list[str]:
+    """A text on lines of at most so many letters; ``textwrap`` takes ten times as long."""
+    first, *others = words.split(" ")
+    lines = [first]
+    for word in others:
+        if len(lines[-1]) + 1 + len(word) <= most:
+            lines[-1] += f" {word}"
+        else:
+            lines.append(word)
+    return lines
 
 
 def _words(x: float, line: float, anchor: str, words: str, letters: float, precision: int) -> str:
