@@ -98,7 +98,9 @@ class Ufo(EditableSource):
             raise FontError("has metrics that are too large for numbers of a font")
         self.default_layer = self._glyph_set(None)
         self.lib = lib = reader.readLib()
-        there = set(self.default_layer.contents)
+        folder, files = self.default_layer.fs.getsyspath("."), self.default_layer.contents
+        self._glifs = {name: os.path.join(folder, file) for name, file in files.items()}
+        there = set(files)
         ordered = [name for name in dict.fromkeys(lib.get(ORDER_KEY, ())) if name in there]
         skipped = set(lib.get(SKIP_KEY, ()))
         self.glyph_names = tuple(n for n in [*ordered, *sorted(there - set(ordered))] if n not in skipped)
@@ -106,8 +108,7 @@ class Ufo(EditableSource):
     @cached_property
     def cmap(self) -> Mapping[int, str]:  # type: ignore[override]
         """Code point to the first glyph that has it."""
-        files, folder = self.default_layer.contents, os.path.dirname(self.default_layer.fs.getsyspath("contents.plist"))
-        return first_claims((name, _claims(os.path.join(folder, files[name]))) for name in self.glyph_names)
+        return first_claims((name, _claims(self._glifs[name])) for name in self.glyph_names)
 
     @cached_property
     def variations(self) -> Mapping[str, str]:  # type: ignore[override]
