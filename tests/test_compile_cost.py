@@ -59,7 +59,7 @@ def test_compiled_functions_take_few_arrays() -> None:
         assert len(own) == function.__code__.co_argcount, name
         counts[name] = sum(map(arrays_in, own.values()))
     assert len(counts) > 200
-    assert counts["glyphspline.fitting.sharp.cutting.simplest"] == 3
+    assert counts["glyphspline.fitting.sharp.stretches.simplest"] == 3
     assert not {name for name, count in counts.items() if count > MOST_ARRAYS}
 
 

@@ -242,24 +242,23 @@ def enclosing(contours: ContourArrays) -> BoolArray:
 def remarks(measures: MeasureColumns, first: int, last: int, tolerance: float) -> Iterator[str]:
     """Remarks on the contours from ``first`` up to ``last`` that miss the tolerance, or enclose something else."""
 
-    def column(name: str) -> Iterator[tuple[str, Any]]:
-        values = measures.get(name, ())[first:last]
-        return ((f"result contour {index}", value) for index, value in enumerate(values))
+    def column(name: str) -> Iterator[tuple[int, Any]]:
+        return enumerate(measures.get(name, ())[first:last])
 
     for (contour, within), (_, bound) in zip(column("within_tolerance"), column("deviation_bound"), strict=True):
         if within is False:
-            yield f"{contour} is certified to {rounded_up(bound, 3):.3g} units, not to {tolerance:g}"
+            yield f"result contour {contour} is certified to {rounded_up(bound, 3):.3g} units, not to {tolerance:g}"
     for (contour, crossings), (_, collapsed) in zip(column("new_crossings"), column("collapsed"), strict=True):
         if crossings:
-            yield f"{contour} crosses itself or others, {crossings} times more than its source"
+            yield f"result contour {contour} crosses itself or others, {crossings} times more than its source"
         elif crossings is None and collapsed is not None:  # of open paths neither is known
-            yield f"crossings of {contour} are not counted: too many strands lie on each other"
+            yield f"crossings of result contour {contour} are not counted: too many strands lie on each other"
     for contour, collapsed in column("collapsed"):
         if collapsed:
-            yield f"{contour} has lost its area, or runs the other way round than its source"
+            yield f"result contour {contour} has lost its area, or runs the other way round than its source"
     for contour, kept in column("corners_kept"):
         if kept:
-            yield f"{contour} keeps its corners: a smooth curve there crosses itself or others"
+            yield f"result contour {contour} keeps its corners: a smooth curve there crosses itself or others"
     for contour, kept in column("source_kept"):
         if kept:
-            yield f"{contour} is the source's own: its fits cross or lose their area"
+            yield f"result contour {contour} is the source's own: its fits cross or lose their area"

@@ -240,6 +240,36 @@ def test_a_contour_without_corners_is_one_closed_spline() -> None:
     np.testing.assert_allclose(result.curve.cubics(), arc.spline.to_bezier(), atol=1e-9)
 
 
+def test_a_stretch_that_no_spline_follows_is_cut_in_two_that_meet_smoothly() -> None:
+    """A circle with a fold at its top, of two half circles smaller than the tolerance."""
+    circle = circle_contour(300).cubics()
+    top = int(circle[:, 0, 1].argmax())
+    east = np.sign(circle[top, 1, 0] - circle[top, 0, 0]) * np.array([1.0, 0.0])
+    round_circle, begin = np.roll(circle, -top, axis=0), circle[top, 0]
+    small, down = 0.8, np.array([0.0, -1.6])
+    a = [begin, begin + 4 * east, begin + 4 * east + down, begin + down, begin + 2 * down]
+    bend = 4 / 3 * small * east
+    fold = [
+        [a[0], a[0] + 1.3 * east, a[1] - 1.3 * east, a[1]], [a[1], a[1] + bend, a[2] + bend, a[2]],
+        [a[2], a[2] - 1.3 * east, a[3] + 1.3 * east, a[3]], [a[3], a[3] - bend, a[4] - bend, a[4]],
+    ]  # fmt: skip
+    round_circle[0, :2] += 2 * down
+    contour = gs.Contour(
+        np.concatenate([round_circle[:, :3].reshape(-1, 2), np.array(fold)[:, :3].reshape(-1, 2)]),
+        np.full(len(circle) + 4, 3),
+    )
+    result = gs.convert(gs.Outline("o", contours=(contour,)), gs.Options(corners="sharp", tolerance=1.0)).contours[0]
+    assert result.measures.within_tolerance
+    assert result.measures.deviation_bound is not None
+    assert true_distance(result, 1) <= result.measures.deviation_bound + 0.01
+    assert [arc.spline.closed for arc in result.interpolations] == [False, False]
+    cubics = result.curve.cubics()
+    ends, starts = cubics[:, 3] - cubics[:, 2], np.roll(cubics[:, 1] - cubics[:, 0], -1, axis=0)
+    cross = ends[:, 0] * starts[:, 1] - ends[:, 1] * starts[:, 0]
+    np.testing.assert_allclose(cross / np.hypot(*ends.T) / np.hypot(*starts.T), 0, atol=1e-6)
+    assert ((ends * starts).sum(axis=1) > 0).all()
+
+
 def test_workers_compile_the_spline_fit_before_their_time_limits_begin() -> None:
     disc = converted(gs.Options(corners="sharp")).contours[2]
     assert [arc.spline.closed for arc in disc.interpolations] == [True]

@@ -284,9 +284,9 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
 @compiled
 def places_beside(
     samples: FloatArray, known: FloatArray, lap: float, beziers: FloatArray, h: FloatArray, closed: int, near: float
-) -> tuple[float, FloatArray]:  # fmt: skip
-    """The largest distance of a curve, and the places of the outline beside its knots, from the feet of the samples in
-    the first master.
+) -> tuple[float, FloatArray, FloatArray]:  # fmt: skip
+    """The largest distance of a curve; the places of the outline beside its knots, from the feet of the samples in the
+    first master; and (K, 2, 2) the end tangents of an arc, derivatives by chord length.
 
     Args:
         samples, beziers, h, near: see :func:`measure`. known, lap: the places of samples, see :class:`Samples`.
@@ -302,13 +302,19 @@ def places_beside(
         j = int(np.searchsorted(feet[:n], knot, side="right")) - 1
         gap = feet[j + 1] - feet[j]
         places[i] = own[j] + ((knot - feet[j]) / gap if gap > 0 else 0.0) * (own[j + 1] - own[j])
+    tangents = np.zeros((len(samples), 2, 2))
     if not closed:
         places[k] = own[n - 1]
-        return worst, places
+        for v in range(len(samples)):
+            b = beziers[v]
+            for axis in range(2):
+                tangents[v, 0, axis] = 3 * (b[0, 1, axis] - b[0, 0, axis]) / h[2]
+                tangents[v, 1, axis] = 3 * (b[k - 1, 3, axis] - b[k - 1, 2, axis]) / h[k + 1]
+        return worst, places, tangents
     for i in range(1, k):
         if places[i] < places[0]:
             places[i] += lap
     back = lap if places[0] >= lap else 0.0
     for i in range(k):
         places[i] -= back
-    return worst, places
+    return worst, places, tangents

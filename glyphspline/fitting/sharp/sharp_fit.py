@@ -187,7 +187,7 @@ def _certified(
     made = [put_together(pieces, v, count, beziers[v], controls[v], lengths) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
     known, kept = np.full(len(same), np.nan), same >= 0
-    if before is not None and mixes is not None:
+    if before is not None:
         known[kept] = before.bounds[same[kept]]
     cubics = np.stack([all_cubics(curve.rounded(options.precision) if mixes is None else curve) for curve in curves])
     bounds, gaps, regular = certify(
@@ -195,7 +195,7 @@ def _certified(
         tolerance, known,
     )  # fmt: skip
     if before is not None:
-        regular[kept] = before.regular[same[kept]]
+        gaps[kept], regular[kept] = before.gaps[same[kept]], before.regular[same[kept]]
     offsets = np.searchsorted(pieces.contour, np.arange(count + 1))
     return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
 

@@ -287,3 +287,12 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
         curve.t[i] = min(max(0.0, low), high)
     # Passes of variant 2 before a curve counts as lost.
     return iterate(curve, tolerance, 200)
+
+
+@compiled
+def has_intervals(curve: Curve) -> bool:
+    """Whether Lemma 2 has an interval for every vertex at the knots of the last cold run."""
+    found = True
+    for i in range(1 - curve.size[1], curve.size[0]):
+        found = found and curve.bounds[i, 0] < curve.bounds[i, 1]
+    return found

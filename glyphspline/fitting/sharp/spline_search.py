@@ -8,7 +8,7 @@ see :mod:`.vertex_steps`. What decides is here, in Python; what computes is comp
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, inf
 from typing import NamedTuple
 
@@ -32,6 +32,10 @@ PATIENCE = 12
 On long stretches of fine detail very many miss it by little, and would get two or three vertices at a time. It saves 13
 of 35,142 segments.
 """
+
+SLOW = 3
+"""Curves in a row, each with more vertices, that are hardly nearer than the best before, after which a guess is given
+up."""
 
 MOST = 1000
 """Spans of one spline at most: what needs more stays as the source has it."""
@@ -64,16 +68,19 @@ class TriedCurve(NamedTuple):
         return len(self.errors)
 
 
-def fit_spline(joints: Joints, piece: Pieces, near: float, settings: SharpSettings, given: bool) -> Pieces:
+def fit_spline(
+    joints: Joints, piece: Pieces, near: float, settings: SharpSettings, given: bool, most: int = MOST
+) -> Pieces:  # fmt: skip
     """One spline, of as few spans as the search finds, in the place of a piece; with an infinite error there is none.
 
     Args:
         near: how near all samples have to be. given: begin from the piece's own vertices and tangents.
+        most: spans.
     """
     k, closed = int(piece.spans[0]), int(piece.closed[0])
     missed, begun = float(piece.errors[0]) if k == 1 else inf, k if given else 0
     samples = samples_between(joints[:], int(piece.joints[0, 0]), int(piece.joints[0, 1]), closed)
-    alone, most = len(samples.Q) == 1, len(samples.places) - 1
+    alone, most = len(samples.Q) == 1, min(most, len(samples.places) - 1)
     if begun == 1 and alone:
         free, tangents = (bool(samples.free[0] == FREE), bool(samples.free[1] == FREE)), piece.tangents.copy()
         missed = fit_cubic(samples.Q[0], samples.directions[0], free, near, settings.cubic_rounds, tangents[0, 0])
@@ -86,7 +93,7 @@ def fit_spline(joints: Joints, piece: Pieces, near: float, settings: SharpSettin
     # segments with "fast"; without a limit 289 more, for 1.4 times the time.
     guess = 2 if not closed and missed < 30.0 * near else max(least, wanted)
     none = piece._replace(errors=np.array([inf]))
-    if max(guess, begun) > min(MOST, most):
+    if max(guess, begun) > most:
         return none
     search = Search(samples, closed, near, settings, min(2 * max(wanted, 4, begun) + 16, most))
     first = None
@@ -109,7 +116,7 @@ class Search:
 
     Attributes:
         samples: of the stretch. closed: 1 for a closed curve, or else 0. near: how near all of them have to be.
-        most: spans.
+        most: spans. guessed: numbers of spans that a guess was made with.
     """
 
     samples: Samples
@@ -117,6 +124,7 @@ class Search:
     near: float
     settings: SharpSettings
     most: int
+    guessed: set[int] = field(default_factory=set)
 
     @property
     def outline(self) -> tuple[FloatArray, FloatArray, IntArray]:
@@ -131,29 +139,30 @@ class Search:
             first: the vertices to begin with; None to begin with ``guess`` spans, and then with more.
             wanted: spans by the density.
         """
-        settings, last = self.settings, inf
+        settings = self.settings
         for start in range(STARTS if first is None else 1):
             if start > 0:
                 guess = max(wanted, guess + 2) + start - 1
             vertices = first or (self.placed(guess) if guess <= self.most else None)
-            slow = insertions = 0
+            slow, insertions, least = 0, 0, inf
             while vertices is not None:
                 curve = self.moved(vertices, settings.rounds)
                 yield curve
-                slow = slow + 1 if curve.error > 4 * self.near and curve.error > 0.7 * last else 0
-                last = curve.error
-                if last == inf or slow == 3:
+                # Masters stay off by some tolerances for long, and may yet pass.
+                near = 0.0 if len(self.samples.Q) == 1 else 4 * self.near
+                slow = slow + 1 if curve.error > max(0.9 * least, near) else 0
+                least = min(least, curve.error)
+                if curve.error == inf or slow == SLOW:
                     break
                 insertions += 1
                 vertices = self.with_more(curve, settings.growth if insertions <= PATIENCE else inf)
-            if vertices is None:
-                last = inf
 
     def thinned(self, best: TriedCurve, least: int) -> TriedCurve:
         """A curve with vertices taken out, the cheapest first, as long as what is left passes.
 
         One curve loses vertices, and is not chosen among several. In a pass a share of them is tried, each once. After
-        a pass that took any out another one follows. Where none can be taken out, a new guess has one less.
+        a pass that took any out another one follows. Where none can be taken out, a new guess has one less, unless it
+        was made before.
         """
         settings = self.settings
         for n in range(settings.passes):
@@ -176,6 +185,8 @@ class Search:
             if k < least or (tried > 0 and n == settings.passes - 1):
                 return best
             if tried == 0 or k + 1 == before:
+                if k in self.guessed:  # it was not near enough
+                    return best
                 curve = self.moved(self.placed(k), settings.rounds)
                 if not curve.error <= self.near:
                     return best
@@ -184,6 +195,7 @@ class Search:
 
     def placed(self, k: int) -> Vertices:
         """Vertices of k spans on the outline."""
+        self.guessed.add(k)
         return Vertices(*place_vertices(self.outline, self.samples.D, k, self.closed))
 
     def with_more(self, curve: TriedCurve, growth: float) -> Vertices | None:
@@ -210,13 +222,11 @@ class Search:
 
     def piece(self, piece: Pieces, curve: TriedCurve) -> Pieces:
         """The curve in the place of a piece."""
-        (points, tips), beziers, h, k = curve.vertices, curve.beziers, curve.h, curve.spans
-        samples, tangents = self.samples, piece.tangents.copy()
-        if not self.closed:
-            tangents[0, :, 0] = 3 * (tips[:, 0] - points[:, 0]) / h[2]
-            tangents[0, :, 1] = 3 * (points[:, k] - tips[:, 1]) / h[k + 1]
-        error, places = places_beside(samples.Q, samples.places, samples.lap, beziers, h, self.closed, self.near)
+        samples = self.samples
+        error, places, tangents = places_beside(
+            samples.Q, samples.places, samples.lap, curve.beziers, curve.h, self.closed, self.near
+        )
         return piece._replace(
-            spans=np.array([k]), starts=np.array([0, len(places)]), vertices=points.swapaxes(0, 1), places=places,
-            tangents=tangents, errors=np.array([error]),
+            spans=np.array([curve.spans]), starts=np.array([0, len(places)]), places=places, errors=np.array([error]),
+            vertices=curve.vertices.points.swapaxes(0, 1), tangents=tangents[None],
         )  # fmt: skip
