@@ -160,8 +160,10 @@ class BatchedInterpolation(NamedTuple):
             points: (N, d) of all polygons, or None.
         """
         offsets, d, closed, residuals, numbers, whole = self
-        count, total = len(offsets) - 1, (len(whole) - 6 * (len(offsets) - 1))
+        count = len(offsets) - 1
+        total = len(whole) - 6 * count
         _, n, iterations, fallbacks, _, uncertified = row
+        # Where knots, parameters, bounds and control points of it begin, as laid_out has them.
         u, t, ends = 2 * count + start + k, 3 * count + total + start, 0
         if not closed:
             u, t, ends = u - k, t - count, 2
