@@ -15,6 +15,7 @@ from ...outlines.segments import farthest_joint, is_backward, lasting
 from ...types import FloatArray, IntArray
 from .corners import Joints, find_joints
 from .cubics import fit_between, is_straight
+from .pieces import Pieces
 
 PART, WHOLE = 1, 2
 """Ways to fit a stretch that has corners: in parts between them, or whole."""
@@ -91,11 +92,11 @@ def simplest(
     K, C, most = len(cubics), len(offsets) - 1, 2 * len(degrees)  # a segment may be cut in two, and be tried twice
     own, kinds, starts = np.empty((K, most, 4, 2)), np.empty(most, np.int64), np.zeros(C + 1, np.int64)
     flipped, enough, firsts = np.zeros(C, np.bool_), np.ones(C, np.bool_), np.zeros(C + 1, np.int64)
-    P = 2 * most
-    contour, joints, ways = np.empty(P, np.int64), np.empty((P, 2), np.int64), np.zeros(P, np.int64)
-    spans, closed, errors = np.empty(P, np.int64), np.zeros(P, np.int64), np.zeros(P)
-    vertices, places, tangents = np.empty((2 * P, K, 2)), np.empty(2 * P), np.zeros((P, K, 2, 2))
-    count, least = 0, 8.0 if K == 1 else 6.0  # numbers that a spline stores; that of masters may have one span
+    P, ways, count = 2 * most, np.zeros(2 * most, np.int64), 0
+    pieces = Pieces(
+        np.empty(P, np.int64), np.empty((P, 2), np.int64), np.empty(P, np.int64), np.zeros(P, np.int64),
+        2 * np.arange(P + 1), np.empty((2 * P, K, 2)), np.empty(2 * P), np.zeros((P, K, 2, 2)), np.zeros(P),
+    )  # fmt: skip
     for c in range(C):
         a, b, at = offsets[c], offsets[c + 1], starts[c]
         chain, types, turns, around = prepared(cubics[:, a:b].copy(), degrees[a:b], near, angle, line, c2)
@@ -108,49 +109,59 @@ def simplest(
                 for r in range(4):
                     k = 3 - r if turns else r
                     own[v, at + j, r, 0], own[v, at + j, r, 1] = chain[v, s, k, 0], chain[v, s, k, 1]
-        last, at = stretches(around, joints, ways, count), count
-        for row in range(count, last):
-            i, j, way = joints[row, 0], joints[row, 1], ways[row]
-            ring = i == 0 and j == m and not around.hard[0]
-            straight = around.line[i] or (not ring and around.corner[i] and around.corner[j] and is_straight(
-                around.samples, around.first[i], around.first[j], near
-            ))  # fmt: skip
-            # The first of its parts, and the numbers that these store; infinite if one is not near enough.
-            parts, stored = at, 0.0 if way == WHOLE else np.inf
-            while way == WHOLE and parts > 0 and ways[parts - 1] == PART:
-                parts -= 1
-                stored += 2.0 * spans[parts] + (4.0 if spans[parts] > 0 else 2.0) if errors[parts] <= near else np.inf
-            error, fits = 0.0 if straight else np.inf, stored > (4.0 if straight else 6.0)
-            if fits and not (straight or ring or around.tied[i] or around.tied[j]):
-                error = fit_between(around, i, j, near, rounds, tangents[at])
-            if way == WHOLE and not (fits and error <= near) and stored <= least:
-                for r in range(parts, at):
-                    ways[r] = 0
-                continue
-            if way == WHOLE and error <= near:
-                for v in range(K):
-                    for end in range(2):
-                        for axis in range(2):
-                            tangents[parts, v, end, axis] = tangents[at, v, end, axis]
-                at, way = parts, 0
-            ways[at], errors[at] = way, error
-            contour[at], spans[at], closed[at] = c, 0 if straight else 1, 1 if ring else 0
-            joints[at, 0], joints[at, 1] = i, j
-            for end in range(2):
-                places[2 * at + end] = joints[at, end]
-                for v in range(K):
-                    for axis in range(2):
-                        vertices[2 * at + end, v, axis] = around.samples[v, around.first[joints[at, end]], axis]
-            at += 1
-        for r in range(count, at):
-            enough[c] = enough[c] and errors[r] <= near and ways[r] == 0
-        firsts[c + 1] = count = at
-    pieces = (
-        contour[:count], joints[:count], spans[:count], closed[:count], 2 * np.arange(count + 1),
-        vertices[: 2 * count], places[: 2 * count], tangents[:count], errors[:count],
+        last = fit_stretches(around, c, pieces, ways, count, near, rounds)
+        for r in range(count, last):
+            enough[c] = enough[c] and pieces.errors[r] <= near and ways[r] == 0
+        firsts[c + 1] = count = last
+    simple = (
+        pieces.contour[:count], pieces.joints[:count], pieces.spans[:count], pieces.closed[:count],
+        pieces.starts[: count + 1], pieces.vertices[: 2 * count], pieces.places[: 2 * count], pieces.tangents[:count],
+        pieces.errors[:count],
     )  # fmt: skip
     total = starts[C]
-    return own[:, :total].copy(), kinds[:total], starts, flipped, pieces, ways[:count], firsts, enough
+    return own[:, :total].copy(), kinds[:total], starts, flipped, simple, ways[:count], firsts, enough
+
+
+@compiled
+def fit_stretches(around: Joints, c: int, pieces: Pieces, ways: IntArray, count: int, near: float, rounds: int) -> int:
+    """Write the pieces of contour c, each with two vertices, from ``count`` on; return where they end."""
+    K, m, at = len(around.samples), len(around.line), count
+    least = 8.0 if K == 1 else 6.0  # numbers that a spline stores; that of masters may have one span
+    joints, spans, errors, tangents = pieces.joints, pieces.spans, pieces.errors, pieces.tangents
+    for row in range(count, stretches(around, joints, ways, count)):
+        i, j, way = joints[row, 0], joints[row, 1], ways[row]
+        ring = i == 0 and j == m and not around.hard[0]
+        straight = around.line[i] or (not ring and around.corner[i] and around.corner[j] and is_straight(
+            around.samples, around.first[i], around.first[j], near
+        ))  # fmt: skip
+        # The first of its parts, and the numbers that these store; infinite if one is not near enough.
+        parts, stored = at, 0.0 if way == WHOLE else np.inf
+        while way == WHOLE and parts > 0 and ways[parts - 1] == PART:
+            parts -= 1
+            stored += 2.0 * spans[parts] + (4.0 if spans[parts] > 0 else 2.0) if errors[parts] <= near else np.inf
+        error, fits = 0.0 if straight else np.inf, stored > (4.0 if straight else 6.0)
+        if fits and not (straight or ring or around.tied[i] or around.tied[j]):
+            error = fit_between(around, i, j, near, rounds, tangents[at])
+        if way == WHOLE and not (fits and error <= near) and stored <= least:
+            for r in range(parts, at):
+                ways[r] = 0
+            continue
+        if way == WHOLE and error <= near:
+            for v in range(K):
+                for end in range(2):
+                    for axis in range(2):
+                        tangents[parts, v, end, axis] = tangents[at, v, end, axis]
+            at, way = parts, 0
+        ways[at], errors[at], joints[at, 0], joints[at, 1] = way, error, i, j
+        pieces.contour[at], spans[at], pieces.closed[at] = c, 0 if straight else 1, 1 if ring else 0
+        for end in range(2):
+            pieces.places[2 * at + end] = joints[at, end]
+            for v in range(K):
+                for axis in range(2):
+                    value = around.samples[v, around.first[joints[at, end]], axis]
+                    pieces.vertices[2 * at + end, v, axis] = value
+        at += 1
+    return at
 
 
 @compiled
