@@ -17,6 +17,8 @@ from .method import Fallback, Method, Parametrisation, Tangents, method_of
 from .polygon import NO_KNOTS, NO_TANGENTS, Polygons, as_points, as_tangents, explain
 from .result import Interpolation
 
+OF_ARCS = "end_tangents belong to an open arc (closed=False)"
+
 __all__ = ["Interpolation", "interpolate", "interpolate_many", "interpolate_vertex"]
 
 
@@ -82,9 +84,11 @@ def interpolate(
         variant, degree, margin, None if own else knots, fallback, residual_tolerance, max_iterations, closed,
         diagnostics,
     )  # fmt: skip
+    if closed and end_tangents is not None:
+        raise OptionError(OF_ARCS)
     p = as_points(points)
     given = _as_knots(knots, p, closed) if own else NO_KNOTS
-    ends = NO_TANGENTS if end_tangents is None else _as_ends([end_tangents], p, closed)
+    ends = NO_TANGENTS if end_tangents is None else as_tangents([end_tangents], p.shape[1])
     if method.readable:
         return _readable(p, method, given if own else None, end_tangents)
     found = interpolate_batch(Polygons(p, np.array((0, len(p))), given, ends), method, 1).first(p.copy())
@@ -164,6 +168,8 @@ def interpolate_each(
     Args:
         keep_points: whether results have a copy of their ``points``.
     """
+    if method.closed and tangents is not None and any(pair is not None for pair in tangents):
+        raise OptionError(OF_ARCS)
     results: list[Any] = [None] * len(polygons)
     good: list[int] = []
     parts: list[FloatArray] = []
@@ -182,7 +188,6 @@ def interpolate_each(
         parts.append(p)
     if not good:
         return results
-    ends = _as_ends([tangents[k] for k in good], parts[0], method.closed) if tangents else NO_TANGENTS
     if method.readable:
         for j, k in enumerate(good):
             try:
@@ -193,7 +198,7 @@ def interpolate_each(
     together = Polygons(
         np.concatenate(parts), np.array([0, *accumulate(map(len, parts))]),
         np.concatenate(given) if given else NO_KNOTS,
-        ends,
+        as_tangents([tangents[k] for k in good], parts[0].shape[1]) if tangents else NO_TANGENTS,
     )  # fmt: skip
     found = interpolate_batch(together, method, threads).results(together.points if keep_points else None)
     for j, k in enumerate(good):
@@ -206,12 +211,6 @@ def _readable(p: FloatArray, method: Method, knots: FloatArray | None, tangents:
 
     result = interpolate_by(method, p, knots, tangents)
     return replace(result, points=np.delete(p, result.merged, axis=0))
-
-
-def _as_ends(tangents: Sequence[Tangents | None], p: FloatArray, closed: bool) -> FloatArray:
-    if closed and any(pair is not None for pair in tangents):
-        raise OptionError("end_tangents belong to an open arc (closed=False)")
-    return as_tangents(tangents, p.shape[1])
 
 
 def _as_knots(knots: ArrayLike, p: FloatArray, closed: bool) -> FloatArray:

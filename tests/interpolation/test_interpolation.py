@@ -371,3 +371,8 @@ def test_random_polygons_converge_as_the_paper_reports(n: int) -> None:
 def test_variant_0_seldom_converges_on_many_vertices() -> None:
     runs = gs.interpolate_many([random_polygon(40, seed) for seed in range(4)], 0, max_iterations=60)
     assert sum(r.converged for r in runs) <= 1
+
+
+def test_an_option_is_wrong_whatever_the_polygons_are() -> None:
+    with pytest.raises(gs.OptionError, match="end_tangents belong to an open arc"):
+        gs.interpolate_many([[[0, 0]]], end_tangents=[((1, 0), None)], errors="return")
