@@ -37,7 +37,10 @@ KNOT = Contour(
 )  # fmt: skip
 """Crosses itself, and is fitted again more than once."""
 
-SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP))
+FISH = Contour(np.array([[136.0, 118], [10, 181], [44, 51], [36, 66], [35, 69], [162, 90]]), np.array([3, 3]))
+"""A single cubic of it fails the certificate, and is fitted again by itself."""
+
+SHAPES = Outline("shapes", contours=(LEAF, SQUARE, DISC, KNOT, TIP, FISH))
 
 
 def converted(options: Options) -> Any:

@@ -79,9 +79,10 @@ def find_joints(
     """
     masters, m = len(cubics), len(degrees)
     places = even_places(cubics, degrees, near)
+    samples = sampled(cubics, places)
     if c2:  # a spline might swing out between the samples beside a tight turn
-        places = graded_places(cubics, places, near)
-    samples, spacing = sampled(cubics, places, near)
+        places, samples = graded(cubics, places, samples, near)
+    spacing = spacings(cubics, places, samples, near)
     first = np.searchsorted(places, np.arange(m + 1.0))
     bends = np.zeros(m)
     corner, hard, line = np.zeros(m + 1, np.bool_), np.zeros(m + 1, np.bool_), np.empty(m, np.bool_)
@@ -152,18 +153,26 @@ def is_roundings(cubics: FloatArray, degrees: IntArray, j: int) -> bool:
 
 
 @compiled
-def sampled(cubics: FloatArray, places: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
-    """(K, N, 2) the outline at places that run once round, and (N - 1,) the wanted distance of vertices after each.
-
-    A master's own counts in proportion to its step: in the one that asks for most vertices it is the wanted one.
-    """
+def sampled(cubics: FloatArray, places: FloatArray) -> FloatArray:
+    """(K, N, 2) the outline at places that run once round."""
     masters, N = len(cubics), len(places)
-    samples, spacing = np.empty((masters, N, 2)), np.empty(N - 1)
+    samples = np.empty((masters, N, 2))
     for v in range(masters):
         for i in range(N - 1):
             j = int(places[i])
             samples[v, i, 0], samples[v, i, 1], _, _, _, _ = jet(cubics[v], j, places[i] - j)
         samples[v, N - 1, 0], samples[v, N - 1, 1] = cubics[v, 0, 0, 0], cubics[v, 0, 0, 1]
+    return samples
+
+
+@compiled
+def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolerance: float) -> FloatArray:
+    """(N - 1,) the wanted distance of vertices after each sample.
+
+    A master's own counts in proportion to its step: in the one that asks for most vertices it is the wanted one.
+    """
+    masters, N = len(cubics), len(places)
+    spacing = np.empty(N - 1)
     for i in range(N - 1):
         j = int(places[i])
         step = chord(samples, i, i + 1)
@@ -178,7 +187,7 @@ def sampled(cubics: FloatArray, places: FloatArray, tolerance: float) -> tuple[F
                 spacing[i] = min(spacing[i], wanted * step / own if masters > 1 else wanted)
         if spacing[i] == np.inf:
             spacing[i] = 1e6 * tolerance
-    return samples, spacing
+    return spacing
 
 
 @compiled
@@ -220,7 +229,7 @@ def set_directions(
 def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> FloatArray:
     """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later.
 
-    The outline between two samples is straight to a seventh of the tolerance in every master.
+    The outline between two samples is straight to three tenths of the tolerance in every master.
     """
     m = len(degrees)
     counts, total = np.empty(m, dtype=np.int64), 0
@@ -233,7 +242,7 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
             for k in range(1, 3):
                 x, y = p[k + 1, 0] - 2 * p[k, 0] + p[k - 1, 0], p[k + 1, 1] - 2 * p[k, 1] + p[k - 1, 1]
                 bend = max(bend, np.hypot(x, y))
-            wanted = max(size / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
+            wanted = max(size / (20 * tolerance), np.sqrt(0.75 * bend / (0.3 * tolerance)))
             most = min(max(np.ceil(wanted), most), 40.0)
         counts[j] = int(most)
         total += counts[j]
@@ -247,36 +256,42 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
 
 
 @compiled
-def graded_places(cubics: FloatArray, places: FloatArray, tolerance: float) -> FloatArray:
-    """The places with more between them, until no step longer than the tolerance is over twice as long as the next.
+def graded(
+    cubics: FloatArray, places: FloatArray, samples: FloatArray, tolerance: float
+) -> tuple[FloatArray, FloatArray]:
+    """Places and samples with more between them, until no step longer than the tolerance is over twice as long as the
+    next.
 
     Halved beside a step that differs a little, as they do between masters, steps would be halved all along the outline.
     """
     # Ratio of adjacent steps from which samples are denser if there are several masters.
-    m, most = cubics.shape[1], 2.0 if len(cubics) == 1 else 3.0
+    masters, most = len(cubics), 2.0 if len(cubics) == 1 else 3.0
     while True:
         n = len(places) - 1
-        step, long = np.empty(n), np.zeros(n, dtype=np.bool_)
-        for v in range(len(cubics)):
-            x, y, _, _, _, _ = jet(cubics[v], 0, 0.0)
+        step, long, count = np.empty(n), np.zeros(n, dtype=np.bool_), 0
+        for v in range(masters):
             for i in range(n):
-                s = min(int(places[i + 1]), m - 1)
-                px, py, _, _, _, _ = jet(cubics[v], s, places[i + 1] - s)
-                step[i] = length(px - x, py - y)
-                x, y = px, py
+                x, y = samples[v, i + 1, 0] - samples[v, i, 0], samples[v, i + 1, 1] - samples[v, i, 1]
+                step[i] = length(x, y)
             for i in range(n):
                 long[i] = long[i] or step[i] > max(most * min(step[i - 1], step[(i + 1) % n]), tolerance)
-        new, count = np.empty(2 * n + 1), 0
         for i in range(n):
-            new[count] = places[i]
-            count += 1
-            if long[i]:
-                new[count] = (places[i] + places[i + 1]) / 2
-                count += 1
+            count += 2 if long[i] else 1
         if count == n:
-            return places
-        new[count] = m
-        places = new[: count + 1]
+            return places, samples
+        new, points, at = np.empty(count + 1), np.empty((masters, count + 1, 2)), 0
+        for i in range(n + 1):
+            new[at] = places[i]
+            for v in range(masters):
+                points[v, at, 0], points[v, at, 1] = samples[v, i, 0], samples[v, i, 1]
+            at += 1
+            if i < n and long[i]:
+                new[at] = (places[i] + places[i + 1]) / 2
+                j = int(new[at])
+                for v in range(masters):
+                    points[v, at, 0], points[v, at, 1], _, _, _, _ = jet(cubics[v], j, new[at] - j)
+                at += 1
+        places, samples = new, points
 
 
 @compiled

@@ -177,7 +177,7 @@ def _closer(chains: Chains, piece: Pieces, shares: FloatArray, settings: SharpSe
     begin, joints = turned(piece, chains.offsets, chains.flipped), chains.joints(piece, settings)
     # What begins from its own vertices has to come nearer than it is, or it stays as it is. Those of masters may be
     # where slip rules them out: a new guess is better.
-    given = len(chains.cubics) == 1
+    given = len(chains.cubics) == 1 and bool(piece.spans[0] > 0)
     most = min(settings.near, float(piece.errors[0])) if given else settings.near
     for near in (shares * most).tolist():
         found = fit_spline(joints, begin, near, settings, given)

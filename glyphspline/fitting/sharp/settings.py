@@ -21,7 +21,7 @@ class SharpSettings(NamedTuple):
         rounds: most steps of a spline's first guess. few_rounds: of one with up to three spans.
         guess: spans of the first guess, as a share of what the density asks for.
         growth: power of a span's error with which vertices are added.
-        removals: share of the vertices that are tried to take out in a pass. passes: of removal.
+        passes: in which vertices are tried to take out. failures: in a row, after which a pass ends.
         dear: estimated cost of a vertex, in tolerances, from which it is not tried.
         removal_rounds: most steps after a removal. reach: vertices on either side of it that move.
     """
@@ -38,8 +38,8 @@ class SharpSettings(NamedTuple):
     few_rounds: int
     guess: float
     growth: float
-    removals: float
     passes: int
+    failures: int
     dear: float
     removal_rounds: int
     reach: int
@@ -47,12 +47,12 @@ class SharpSettings(NamedTuple):
 
 EFFORTS = {
     "fast": partial(
-        SharpSettings, chain_rounds=4, cubic_rounds=4, rounds=6, few_rounds=12, guess=1.0, growth=0.4,
-        removals=0.3, passes=1, dear=0.5, removal_rounds=2, reach=3,
+        SharpSettings, chain_rounds=4, cubic_rounds=4, rounds=5, few_rounds=9, guess=1.0, growth=0.4,
+        passes=1, failures=3, dear=0.5, removal_rounds=2, reach=3,
     ),
     "best": partial(
         SharpSettings, chain_rounds=6, cubic_rounds=12, rounds=10, few_rounds=20, guess=0.8, growth=0.3,
-        removals=0.7, passes=2, dear=1.5, removal_rounds=8, reach=4,
+        passes=2, failures=8, dear=1.5, removal_rounds=8, reach=4,
     ),
 }  # fmt: skip
 """The settings of each effort, but for what the options say."""
