@@ -220,9 +220,10 @@ class Search:
         i, or all."""
         settings, k = self.settings, vertices.points.shape[1] - 1 + self.closed
         limits = (self.near, settings.margin, settings.residual)
+        steps = settings.few_rounds if k <= 3 else rounds
+        steps += 1 if len(self.samples.Q) > 1 else 0  # masters get near later
         error, points, tips, beziers, h, errors = move_vertices(
-            vertices[:], self.closed, self.outline, limits, settings.few_rounds if k <= 3 else rounds, i,
-            k if reach is None else reach,
+            vertices[:], self.closed, self.outline, limits, steps, i, k if reach is None else reach
         )  # fmt: skip
         return TriedCurve(error, Vertices(points, tips), beziers, h, errors)
 
