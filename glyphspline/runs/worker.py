@@ -20,6 +20,8 @@ from ..report import FOLDER as GALLERY
 from ..report.data import DECIMALS, FULL, encoded, glyph_text, plain, row_of
 from ..types import IntArray, rounded_up
 from ..writers.formats import format_named
+from ..writers.settings import Whose
+from ..writers.svg.comb_data import GlyphComb, combs_data
 from ..writers.svg.document import PolygonData, polygon_data, polygon_document, source_data
 from ..writers.svg.path_data import PathData, both_ways, curves_data
 from .engine import Item
@@ -97,6 +99,7 @@ class DrawnGlyph(NamedTuple):
     Attributes:
         path: of the result. source: of the source; None if no format shows it. polygons: None without a gallery.
         finer: of the result, with a decimal more: the gallery draws combs over it, which are uneven otherwise.
+        combs: of its curvature map; None if no format shows it.
         measures: of the contours; None if nothing is fitted.
         kept: what is stored as the result, if that is another one. axes: see :func:`.report.data.glyph_text`.
     """
@@ -109,6 +112,7 @@ class DrawnGlyph(NamedTuple):
     kept: Any = None
     axes: Mapping[str, Any] | None = None
     finer: PathData | None = None
+    combs: Mapping[Whose, GlyphComb] | None = None
 
 
 def drawn(job: Output, results: Sequence[GlyphResult]) -> list[DrawnGlyph]:
@@ -127,7 +131,17 @@ def drawn(job: Output, results: Sequence[GlyphResult]) -> list[DrawnGlyph]:
     if GALLERY in spec.formats:
         finer = curves_data(arrays.curves, results[0].options.precision + 1, offsets)
         glyphs = [glyph._replace(finer=path) for glyph, path in zip(glyphs, finer, strict=True)]
+    if "curvature" in spec.formats:
+        maps, scale = spec.maps, map_scale(job, results[0])
+        combs = combs_data(results, maps.comb, scale, in_corners=maps.corner_teeth)
+        glyphs = [glyph._replace(combs=own) for glyph, own in zip(glyphs, combs, strict=True)]
     return glyphs
+
+
+def map_scale(job: Output, result: GlyphResult) -> float:
+    """The curvature, in 1/unit, of a full tooth in maps."""
+    em = result.outline.metrics.units_per_em
+    return job.curvature_scale or job.spec.maps.scale_for(em) or FULL / em
 
 
 def contour_entries(measures: MeasureColumns, offsets: IntArray) -> list[list[dict[str, Any]]]:
@@ -193,9 +207,9 @@ def written(name: str, job: Output, glyph: DrawnGlyph, files: dict[str, str]) ->
     shared: dict[str, dict[str, Any]] = {"svg": path, "source": {"path": source}, "png": path, "pdf": path}
     known = shared.get(name, {})
     if name in MAPS:
-        em = result.outline.metrics.units_per_em
-        known = {"maps": spec.maps, "scale": job.curvature_scale or spec.maps.scale_for(em) or FULL / em}
-        known |= path if name == "curvature" and spec.maps.comb != "source" else {}
+        known = {"maps": spec.maps, "scale": map_scale(job, result)}
+        if name == "curvature":
+            known |= {"combs": glyph.combs} | (path if spec.maps.comb != "source" else {})
     settings = spec.settings if known else spec.settings.scaled(result.outline.metrics)
     write: Any = format_named(name).write
     made: str | bytes = write(result, settings, **known)

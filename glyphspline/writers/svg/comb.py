@@ -10,6 +10,7 @@ import numpy as np
 
 from ...curves.curvature import ANGLE, Comb, relative, shared_scale
 from ...errors import require_choice
+from ...fitting.options import Options
 from ...fitting.results import GlyphResult
 from ...outlines.contour_arrays import ContourArrays
 from ...outlines.open_paths import are_open, paths
@@ -125,20 +126,19 @@ def curves_of(glyph: GlyphResult, whose: Whose) -> ContourArrays:
     return glyph.arrays.curves if whose == "result" else glyph.arrays.source
 
 
-def sides_and_corners(
-    glyph: GlyphResult, opened: BoolArray, whose: Whose = "result", *, in_corners: bool = False
-) -> tuple[FloatArray, FloatArray, IntArray]:
-    """(C,) sides of the ink, 1.0 of open paths, which have none; (k, 2) corners in whose turn teeth have no length,
-    (C + 1,) where each contour's begin.
+def corners_left_out(
+    source: ContourArrays, options: Options, whose: Whose, in_corners: bool
+) -> tuple[FloatArray, IntArray]:
+    """(k, 2) corners in whose turn teeth have no length, (C + 1,) where each contour's begin.
 
     Only a smooth result turns about a corner. In the source, and in a result with corners, it is a point between two
-    curvatures. ``opened``: (C,) which contours are open paths.
+    curvatures.
     """
-    from ...outlines.ink import corner_points, ink_sides  # here and not above: the package opens without a compiler
+    from ...outlines.ink import corner_points  # here and not above: the package opens without a compiler
 
-    turned = whose == "result" and glyph.options.corners == "smooth" and not in_corners
-    corners, offsets = corner_points(glyph.arrays.source, np.radians(CORNER_ANGLE) if turned else np.inf)
-    return np.where(opened, 1.0, ink_sides(curves_of(glyph, whose))), corners, offsets
+    turned = whose == "result" and options.corners == "smooth" and not in_corners
+    corners: tuple[FloatArray, IntArray] = corner_points(source, float(np.radians(CORNER_ANGLE)) if turned else np.inf)
+    return corners
 
 
 def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corners: bool = False) -> list[Teeth]:
@@ -147,9 +147,12 @@ def teeth(glyph: GlyphResult, scale: float, whose: Whose = "result", *, in_corne
     Without ``in_corners`` a result's teeth in the turn of a corner have no length. Those of an open path come there and
     back, so that a line through their tips is closed.
     """
+    from ...outlines.ink import ink_sides  # as above
+
     em, curves = glyph.outline.metrics.units_per_em, curves_of(glyph, whose)
     opened = are_open(curves)
-    sides, corners, offsets = sides_and_corners(glyph, opened, whose, in_corners=in_corners)
+    sides = np.where(opened, 1.0, ink_sides(curves))
+    corners, offsets = corners_left_out(glyph.arrays.source, glyph.options, whose, in_corners)
     found = []
     for item, c in zip(combs(glyph, 1.0, whose), np.flatnonzero(np.diff(curves.offsets)).tolist(), strict=True):
         own = teeth_of(item, em, scale, float(sides[c]), corners[offsets[c] : offsets[c + 1]])

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cache, lru_cache
+from collections.abc import Iterator, Mapping
+from functools import cache, lru_cache, reduce
 from itertools import pairwise
 from math import floor
 
 import numpy as np
 
 from ...fitting.results import GlyphResult
-from ...outlines.open_paths import are_open, paths
 from ..settings import PLAIN_MAPS, Combs, Maps, Settings, Whose
 from .comb import (
     SIDES,
@@ -21,19 +21,16 @@ from .comb import (
     legend,
     palette,
     shown_by,
-    sides_and_corners,
 )  # fmt: skip
+from .comb_data import STROKE, GlyphComb, combs_data
 from .document import data_attributes, em_box, head, label, number, view_box_value
-from .path_data import Box, PathData, comb_precision, curves_data, dots_data, polylines_data, union
+from .path_data import PathData, comb_precision, curves_data, dots_data, polylines_data, union
 
 WIDEST, STEP = 1.5, 0.02
 """Width in em of the longest legend, and what widths are multiples of: those of many glyphs are equal."""
 
 LETTERS, ADVANCE = 0.028, 0.6
 """Size in em of a legend's letters, and their advance in sizes, which is larger than that of common sans serifs."""
-
-STROKE = 3
-"""Width of the outline in 1/1000 em. It would hide teeth of less than half of it, so these are left out."""
 
 MEANING = (
     "Length and colour of a tooth are the curvature there, 1/radius with the em as the unit: 2 is the bend of a circle"
@@ -87,6 +84,7 @@ def write_map(
     maps: Maps = PLAIN_MAPS,
     scale: float | None = None,
     path: PathData | None = None,
+    combs: Mapping[Whose, GlyphComb] | None = None,
     *,
     vertices: bool = True,
     control_polygon: bool = False,
@@ -94,16 +92,19 @@ def write_map(
     """The document of :func:`to_curvature_svg` in UTF-8.
 
     Args:
-        settings: whose title names the glyph otherwise. scale, path: the latter of the curves under the comb; if known.
+        settings: whose title names the glyph otherwise.
+        scale, path, combs: the second of the curves under the comb, the third of :func:`.combs_data`; if known.
     """
-    outline, arrays, combs = glyph.outline, glyph.arrays, maps.comb
-    em, whose = outline.metrics.units_per_em, shown_by(combs)
+    outline, arrays = glyph.outline, glyph.arrays
+    em, whose = outline.metrics.units_per_em, shown_by(maps.comb)
     if scale is None:
         scale = maps.scale_for(em) or curvature_scale([glyph])
     precision = comb_precision(em)
     path = path or curves_data(curves_of(glyph, whose), glyph.options.precision)[0]
-    layers, box, cut, corners = _comb(glyph, scale, maps, precision, not path.strokes)
-    box = union((0.0, np.inf, outline.advance, -np.inf), box or em_box(outline))
+    combs = combs or combs_data([glyph], maps.comb, scale, in_corners=maps.corner_teeth)[0]
+    shown, layers = combs[whose], list(_layers(combs, em))
+    boxes = [comb.box for comb in combs.values() if comb.box] or [em_box(outline)]
+    box = reduce(union, boxes, (0.0, np.inf, outline.advance, -np.inf))
     kind = "outline" if whose == "result" else "source"
     layers.append(
         f'<path class="{kind}" stroke="currentColor" stroke-width="{_width(em, STROKE)}" fill="currentColor"'
@@ -129,7 +130,7 @@ def write_map(
     letters = min(LETTERS * em, width / 9)
     measured = arrays.measures.get("max_curvature", ()) if whose == "result" else ()
     known = [each for each in measured if each is not None]
-    words = legend(combs, cut, scale * em, corners, max(known) * em if known else None)
+    words = legend(maps.comb, shown.cut, scale * em, shown.corners, max(known) * em if known else None)
     lines = _lines(f"κ{words}", int(width / (ADVANCE * letters)))
     said = [_words(0.0, -2.75 - 1.4 * k, "start", line, letters, precision) for k, line in enumerate(lines)]
     height, margin = (3.1 + 1.4 * (len(lines) - 1)) * letters, 0.02 * em
@@ -149,47 +150,17 @@ def write_map(
     return b"".join([layer.encode() for layer in (head(view_box_value(box, precision), named, attributes), *layers)])
 
 
-def _comb(
-    glyph: GlyphResult, scale: float, maps: Maps, precision: int, closed: bool
-) -> tuple[list[str], Box | None, int, int]:
-    """The comb's paths, the box around curves and combs, and the numbers of teeth that are cut and of corners without.
-
-    Paths are teeth by colour class, the line of tips and marks of cut teeth; of the source of both, the line alone.
-    ``closed``: no contour shown is an open path.
-    """
-    from .path_text import LARGEST, comb_teeth, comb_text, dots_text  # here: the package opens without a compiler
-
-    em, unit, combs = glyph.outline.metrics.units_per_em, 10.0**precision, maps.comb
-    least = 0.5 * STROKE / 1000 / TOOTH  # what half the outline's width hides, in units of the scale
-    layers, box = [f'<g class="comb" stroke-width="{_width(em, 1.8)}">'], None
-    number_cut = corners = 0
-    wanted: tuple[Whose, ...] = ("result", "source") if combs == "both" else (shown_by(combs),)
-    for whose in wanted:
-        curves = curves_of(glyph, whose)
-        is_closed = closed and whose == shown_by(combs)
-        opened = np.zeros(curves.num_contours, dtype=np.bool_) if is_closed else are_open(curves)
-        marks = sides_and_corners(glyph, opened, whose, in_corners=maps.corner_teeth)
-        curves = paths(curves, opened)
-        ends, classes, cut, offsets = comb_teeth(curves, *marks, float(em), float(scale), least, precision)
-        if not len(ends):
-            continue
-        columns = ends.reshape(-1, 2).T.copy()  # of which NumPy finds extremes six times as fast
-        (left, bottom), (right, top) = columns.min(axis=1).tolist(), columns.max(axis=1).tolist()
-        if max(right, top, -left, -bottom) >= LARGEST:
-            continue
-        box = union((left / unit, bottom / unit, right / unit, top / unit), box)
-        data, at = comb_text(ends, classes, offsets, precision)
-        drawn = data.tobytes().decode()
-        parts = [drawn[a:b] for a, b in pairwise(at.tolist())]
-        if whose != shown_by(combs):
-            dashed = f'stroke-width="{_width(em, 2.4)}" stroke-dasharray="{_width(em, 10)} {_width(em, 5)}"'
-            layers.append(f'<path class="source-comb" stroke="{SOURCE}" {dashed} d="{parts[-1]}"/>\n')
-            continue
-        cut &= classes >= 0
-        number_cut, corners = int(cut.sum()), len(marks[1])
-        parts.append(dots_text(ends[cut, 2:], precision).tobytes().decode())
-        layers += [f'{begin}{part}"/>\n' for begin, part in zip(_styles(em), parts, strict=True) if part]
-    return [*layers, "</g>\n"], box, number_cut, corners
+def _layers(combs: Mapping[Whose, GlyphComb], em: float) -> Iterator[str]:
+    """The comb's paths: teeth by colour class, the line of tips and marks of cut teeth; of the source of both, the line
+    alone."""
+    yield f'<g class="comb" stroke-width="{_width(em, 1.8)}">'
+    first, *others = combs.values()
+    yield from (f'{begin}{path}"/>\n' for begin, path in zip(_styles(em), first.paths, strict=False) if path)
+    dashed = f'stroke-width="{_width(em, 2.4)}" stroke-dasharray="{_width(em, 10)} {_width(em, 5)}"'
+    for comb in others:
+        if comb.box:
+            yield f'<path class="source-comb" stroke="{SOURCE}" {dashed} d="{comb.paths[-2]}"/>\n'
+    yield "</g>\n"
 
 
 @cache

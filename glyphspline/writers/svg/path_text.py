@@ -12,7 +12,7 @@ from ...compiled import compiled, inlined
 from ...curves.comb import CURVATURE, NX, NY, X, Y, control_length, sampled
 from ...curves.curvature import ANGLE
 from ...outlines.contour_arrays import ContourArrays
-from ...outlines.ink import turned_about
+from ...outlines.ink import ink_sides, turned_about
 from ...outlines.segments import all_cubics
 from ...types import BoolArray, FloatArray, IntArray
 from .comb import LONGEST, MOST_TEETH, NEAR, SIDES, SPACING, TOOTH
@@ -34,6 +34,9 @@ LARGEST = 1e15
 
 WIDEST = 40
 """Characters of a pair of numbers with its command, and two for each decimal."""
+
+PARTS = 2 * SIDES + 3
+"""Paths of a comb: teeth by colour class, the line of tips, marks of cut teeth."""
 
 TIE = 1e-6
 """Fractions this near to a half are rounded up: rounding errors do not decide which way."""
@@ -116,13 +119,11 @@ def write_shorter(
 ) -> tuple[int, int]:
     """Write a relative command, or the absolute one if that is shorter; the index behind it, and its letter."""
     behind = write_command(text, at, before, letter - ABSOLUTE, points, 0.0, 0.0, precision)
-    size, kept = behind - at, text[at:behind].copy()
+    kept = text[at:behind].copy()
     behind = write_command(text, at, before, letter, points, x, y, precision)
-    if size >= behind - at:
+    if len(kept) >= behind - at:
         return behind, letter
-    for k in range(size):
-        text[at + k] = kept[k]
-    return at + size, letter - ABSOLUTE
+    return write_bytes(text, at, kept), letter - ABSOLUTE
 
 
 @compiled
@@ -195,6 +196,86 @@ def dots_text(whole: FloatArray, precision: int) -> Text:
             text[at], text[at + 1] = 104, 48  # h0
             at, x, y, letter = at + 2, whole[i, 0], whole[i, 1], MOVE_BY
     return text[:at]
+
+
+@compiled
+def combs_text(
+    curves: ContourArrays, whole: ContourArrays, opened: BoolArray, glyphs: IntArray,
+    corners: tuple[FloatArray, IntArray], measures: tuple[float, float, float], precision: int,
+) -> tuple[Text, IntArray, FloatArray, IntArray]:  # fmt: skip
+    """The combs of many glyphs, one after another: their teeth, and the text of these.
+
+    Args:
+        curves: of all glyphs, of open paths the way there. whole: as they are. opened: (C,) which are open paths.
+        glyphs: (G + 1,) where the contours of each glyph begin. corners: see :func:`.comb.corners_left_out`.
+        measures: em, scale and ``least`` of :func:`comb_teeth`.
+
+    Returns:
+        Text as bytes; (G, PARTS + 1) where each path of a glyph begins in it; nothing of a glyph with larger
+        coordinates. (G, 4) boxes around feet and tips: left, bottom, right, top; NaN without teeth. (G,) the number of
+        teeth that are cut.
+    """
+    em, scale, least = measures
+    count, text, at = len(glyphs) - 1, np.empty(0, np.uint8), 0
+    parts, boxes = np.zeros((count, PARTS + 1), np.int64), np.full((count, 4), np.nan)
+    numbers = np.zeros(count, np.int64)
+    for g in range(count):
+        a, b = glyphs[g], glyphs[g + 1]
+        sides = ink_sides(part_of(whole, a, b))
+        for c in range(a, b):
+            sides[c - a] = 1.0 if opened[c] else sides[c - a]
+        ends, classes, cut, offsets = comb_teeth(
+            part_of(curves, a, b), sides, corners[0], corners[1][a : b + 1], em, scale, least, precision
+        )
+        left, bottom, right, top = extremes(ends)
+        fits = max(max(right, top), -min(left, bottom)) < LARGEST and len(ends) > 0
+        if fits:
+            boxes[g, 0], boxes[g, 1], boxes[g, 2], boxes[g, 3] = left, bottom, right, top
+        marked = np.empty((len(ends), 2))
+        for i in range(len(ends)):
+            if cut[i] and classes[i] >= 0:
+                marked[numbers[g], 0], marked[numbers[g], 1] = ends[i, 2], ends[i, 3]
+                numbers[g] += 1
+        own, begins = comb_text(ends if fits else ends[:0], classes, offsets if fits else offsets[:1], precision)
+        marks = dots_text(marked[: numbers[g] if fits else 0], precision)
+        for k in range(PARTS):
+            parts[g, k] = at + begins[k]
+        parts[g, PARTS] = at + len(own) + len(marks)
+        if parts[g, PARTS] > len(text):
+            larger = np.empty(2 * parts[g, PARTS], np.uint8)
+            write_bytes(larger, 0, text[:at])
+            text = larger
+        at = write_bytes(text, write_bytes(text, at, own), marks)
+    return text[:at], parts, boxes, numbers
+
+
+@inlined
+def extremes(ends: FloatArray) -> tuple[float, float, float, float]:
+    """Left, bottom, right and top of feet and tips (k, 4)."""
+    left = bottom = np.inf
+    right = top = -np.inf
+    for i in range(len(ends)):
+        left, right = min(left, min(ends[i, 0], ends[i, 2])), max(right, max(ends[i, 0], ends[i, 2]))
+        bottom, top = min(bottom, min(ends[i, 1], ends[i, 3])), max(top, max(ends[i, 1], ends[i, 3]))
+    return left, bottom, right, top
+
+
+@inlined
+def write_bytes(text: Text, at: int, own: Text) -> int:
+    """Write a text into another one at an index; returns the index behind."""
+    for k in range(len(own)):
+        text[at + k] = own[k]
+    return at + len(own)
+
+
+@compiled
+def part_of(curves: ContourArrays, a: int, b: int) -> ContourArrays:
+    """Contours a up to b, in the same memory but for their offsets."""
+    points, degrees, offsets, starts = curves
+    return ContourArrays(
+        points[starts[a] : starts[b]], degrees[offsets[a] : offsets[b]], offsets[a : b + 1] - offsets[a],
+        starts[a : b + 1] - starts[a],
+    )  # fmt: skip
 
 
 @compiled
