@@ -32,7 +32,7 @@ from .kernels.driver import (
     unit_of,
 )  # fmt: skip
 from .kernels.footpoint import WORK
-from .kernels.lemma2 import STEPS, arc_interval, begin, finish, halley, simple
+from .kernels.lemma2 import STEPS, arc_interval, begin, coefficients, finish, halley, simple
 from .kernels.passes import (
     ELSE,
     LEFT,
@@ -211,7 +211,7 @@ def _intervals(
     a, b, c, d = h[lanes - 2], h[lanes - 1], h[lanes], h[lanes + 1]
     if rule.variant in (0, 1, 3):
         return *simple(a, b, c, d, rule.variant), np.zeros(len(lanes), dtype=np.bool_)
-    first, second, (behind, sign, least, missing) = begin(a, b, c, d, rule.margin, peak_shares)
+    first, second, (behind, sign, least, missing, _) = begin(coefficients(a, b, c, d), rule.margin, peak_shares)
     low, high = finish(_crossed(*first), _crossed(*second), behind, sign, (missing > 0.0) & (peak_shares == 0.0), b, c)
     return low, high, least, missing > 0.0
 

@@ -282,7 +282,7 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
         c = margin
         if not closed:
             c = add_fixed(curve.h, i + 1, i, k + 1, 0.0, 0.0, margin, before, after)
-        low, high, _, _ = one_interval(before, after, c, 1.0)
+        low, high, _, _ = one_interval(before, after, c, 0.0)
         curve.bounds[i, 0], curve.bounds[i, 1] = low, high
         curve.t[i] = min(max(0.0, low), high)
     # Passes of variant 2 before a curve counts as lost.

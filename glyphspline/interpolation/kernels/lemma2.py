@@ -32,8 +32,8 @@ STEPS = 60
 CLOSE = 1e-6
 """A step this small (share of the span) is the last of Halley's method: what it leaves is the cube of that."""
 
-Side = tuple[float, float, float]
-"""Bernstein coefficients of a function on one side of its knot, from there outwards."""
+Function = tuple[Real, Real, Real, Real, Real, Real, Real]
+"""Bernstein coefficients of a function on the spans before and behind its knot, which share the fourth."""
 
 Crossing = tuple[Real, Real, Real, Real, Real, Real, Real, Real]
 """What the rows of a crossing have."""
@@ -57,8 +57,8 @@ def set_intervals(h: FloatArray, k: int, rule: Rule, peak_share: float, bounds: 
         return
     for j in range(m):
         i, n = k + j, TOGETHER + j
-        first, second, (R[BEHIND + j], R[SIGN + j], R[LEAST + j], R[MISSING + j]) = begin(
-            h[i - 2], h[i - 1], h[i], h[i + 1], rule.margin, peak_share
+        first, second, (R[BEHIND + j], R[SIGN + j], R[LEAST + j], R[MISSING + j], _) = begin(
+            coefficients(h[i - 2], h[i - 1], h[i], h[i + 1]), rule.margin, peak_share
         )
         R[K0 + j], R[K1 + j], R[K2 + j], R[K3 + j], R[INSIDE + j], R[OUTSIDE + j], R[AT + j], R[FINAL + j] = first
         R[K0 + n], R[K1 + n], R[K2 + n], R[K3 + n], R[INSIDE + n], R[OUTSIDE + n], R[AT + n], R[FINAL + n] = second
@@ -100,16 +100,17 @@ def simple(a: Real, b: Real, c: Real, d: Real, variant: int) -> tuple[Real, Real
 
 @inlined
 def begin(
-    a: Real, b: Real, c: Real, d: Real, margin: float, peak_share: Real
-) -> tuple[Crossing, Crossing, tuple[Real, Real, Real, Real]]:
-    """Lemma 2 for a vertex among four spans: its two crossings before the first step, and the rows of the vertex."""
-    before0, before1, before2, knot, behind1, behind2, behind3 = coefficients(a, b, c, d)
+    function: Function, margin: float, peak_share: Real
+) -> tuple[Crossing, Crossing, tuple[Real, Real, Real, Real, Real]]:
+    """Lemma 2 for a vertex's function: its two crossings before the first step, the rows of the vertex, the level."""
+    before0, before1, before2, knot, behind1, behind2, behind3 = function
     behind = behind1 > knot
     c1, o1 = chosen(behind, behind1, before2), chosen(behind, before2, behind1)
     c2, o2 = chosen(behind, behind2, before1), chosen(behind, before1, behind2)
     c3, o3 = chosen(behind, behind3, before0), chosen(behind, before0, behind3)
     d0, d1, d2 = c1 - knot, c2 - c1, c3 - c2
     square = d1 * d1 - d0 * d2
+    # Fixed functions may raise the end of a side again, where W_i is below 1/2.
     y = chosen((square < 0.0) | ((d1 >= 0.0) & (d2 > 0.0)), 1.0, d0 / (d0 - d1 + np.sqrt(square)))
     y = chosen(d0 <= 0.0, 0.0, y)
     top = value_at(knot, c1, c2, c3, y)
@@ -131,7 +132,7 @@ def begin(
     return (
         first,
         second,
-        (chosen(behind, 1.0, 0.0), chosen(alone | outside, 1.0, -1.0), least, chosen(missing, 1.0, 0.0)),
+        (chosen(behind, 1.0, 0.0), chosen(alone | outside, 1.0, -1.0), least, chosen(missing, 1.0, 0.0), level),
     )
 
 
@@ -166,7 +167,7 @@ def arc_interval(
     c = add_fixed(h, j - 1, i, n, natural[0], natural[1], rule.margin, before, after)
     if rule.variant == 3:
         return 0.0, 0.0, before[3], True
-    low, high, least, found = one_interval(before, after, c, peak_share if peak_share > 0.0 else 1.0)
+    low, high, least, found = one_interval(before, after, c, peak_share)
     return low * (left if low < 0.0 else right), high * (left if high < 0.0 else right), least, found
 
 
@@ -226,65 +227,36 @@ def end_shares(nearest: float, beyond: float, weight: float) -> tuple[float, flo
 
 
 @compiled
-def one_interval(a: FloatArray, b: FloatArray, margin: float, share: float) -> tuple[float, float, float, bool]:
+def one_interval(a: FloatArray, b: FloatArray, margin: float, peak_share: float) -> tuple[float, float, float, bool]:
     """Lemma 2 for one vertex: where its function is at least 1/2 + c, or as high as it gets if that is lower.
 
     Args:
         a, b: (4,) Bernstein coefficients of the function on the span before u_i and on the span after it.
-        margin: c of the lemma.
-        share: of the peak, a bound on the level (``fallback="peak"``); 1 is ``fallback="knot"``.
+        margin: c of the lemma. peak_share: of ``fallback="peak"``, 0 for "knot".
 
     Returns:
         The interval's ends, each as a signed share of its span (-1 is u_{i-1}, +1 is u_{i+1}), the least value on it,
         and whether that is an interval of the lemma: 0, 0, the value at u_i and False where the function does not rise
         above 1/2, or the level is below.
     """
-    rises = b[1] > b[0]
-    before, behind = (a[2], a[1], a[0]), (b[1], b[2], b[3])
-    main, other = (behind, before) if rises else (before, behind)
-    y, top = peak_of(b[0], main)
-    level = min(0.5 + margin, share * top)
-    if top <= 0.5 or level < 0.5:
+    function = a[0], a[1], a[2], b[0], b[1], b[2], b[3]
+    first, second, (behind, sign, least, missing, level) = begin(function, margin, peak_share)
+    if missing > 0.0 or level < 0.5:
         return 0.0, 0.0, b[0], False
-    near, far, least = level_interval(b[0], main, other, y, top, level)
-    low, high = (near, far) if rises else (-far, -near)
+    low, high = finish(crossing(first), crossing(second), behind, sign, False, 1.0, 1.0)
     return low, high, least, True
 
 
-@compiled
-def peak_of(knot: float, main: Side) -> tuple[float, float]:
-    """Where on the main side a function is highest, and how high it is there."""
-    c1, c2, c3 = main
-    d0, d1, d2 = c1 - knot, c2 - c1, c3 - c2
-    square = d1 * d1 - d0 * d2
-    if d0 <= 0.0:
-        y = 0.0
-    elif square < 0.0 or (d1 >= 0.0 and d2 > 0.0):  # fixed functions may raise the end again, where W_i is below 1/2
-        y = 1.0
-    else:
-        y = d0 / (d0 - d1 + np.sqrt(square))
-    return y, value_at(knot, c1, c2, c3, y)
-
-
-@compiled
-def level_interval(
-    knot: float, main: Side, other: Side, y: float, top: float, level: float
-) -> tuple[float, float, float]:
-    """The ends of the interval on which a function is at least ``level``, as shares along the main side; its least.
-
-    Args:
-        knot: the function there.
-        y, top: its peak, as :func:`peak_of` has it; where ``top`` is not above the level, the interval is that alone.
-    """
-    (c1, c2, c3), (o1, o2, o3) = main, other
-    if top <= level:
-        return y, y, top
-    far = 1.0 if c3 >= level else crossing(knot, c1, c2, c3, level, y, 1.0)
-    least = c3 if c3 >= level else level
-    if knot < level:
-        return crossing(knot, c1, c2, c3, level, y, 0.0), far, min(least, level)
-    near = -1.0 if o3 >= level else -crossing(knot, o1, o2, o3, level, 0.0, 1.0)
-    return near, far, min(least, o3 if o3 >= level else level)
+@inlined
+def crossing(begun: Crossing) -> float:
+    """Where a crossing is in the end."""
+    k0, k1, k2, k3, inside, outside, x, final = begun
+    for _ in range(STEPS):
+        if final > 0.0:
+            break
+        x, inside, outside, last = halley(k0, k1, k2, k3, inside, outside, x)
+        final = 1.0 if last else 0.0
+    return x
 
 
 @compiled
@@ -292,18 +264,6 @@ def value_at(c0: Real, c1: Real, c2: Real, c3: Real, x: Real) -> Real:
     """A cubic in Bernstein form."""
     y = 1.0 - x
     return y * y * (y * c0 + 3.0 * x * c1) + x * x * (3.0 * y * c2 + x * c3)
-
-
-@compiled
-def crossing(c0: float, c1: float, c2: float, c3: float, level: float, inside: float, outside: float) -> float:
-    """Where a cubic falls below a level, once between ``inside``, where it is as high, and ``outside``."""
-    k0, k1, k2, k3 = powers(c0, c1, c2, c3, level)
-    x = 0.5 * (inside + outside)
-    for _ in range(STEPS):
-        x, inside, outside, final = halley(k0, k1, k2, k3, inside, outside, x)
-        if final:
-            break
-    return x
 
 
 @inlined
