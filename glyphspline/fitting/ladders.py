@@ -54,8 +54,9 @@ Fraunces 980 of 5,993 segments stay as the source has them; without the last one
 """
 
 STARTS = 3
-"""First guesses of a spline, each with more vertices, before its stretch is given up.
+"""First guesses of the spline of several masters, each with more vertices, before its stretch is given up: without the
+third one an oval of four masters stays the source's at a tolerance of 0.2 units.
 
-The second one saves 25 segments with "best", the third one none of these; without it an oval of four masters stays
-the source's at a tolerance of 0.2 units.
+A stretch of a single outline that the first guess fails is cut in two. On 60 glyphs of a brush face that takes a ninth
+less time than three guesses, and there are 94 of 7,010 segments less and 24 of 18,164 numbers more.
 """

@@ -144,8 +144,8 @@ class Search:
             first: the vertices to begin with; None to begin with ``guess`` spans, and then with more.
             wanted: spans by the density.
         """
-        settings = self.settings
-        for start in range(STARTS if first is None else 1):
+        settings, alone = self.settings, len(self.samples.Q) == 1
+        for start in range(1 if alone or first else STARTS):
             if start > 0:
                 guess = max(wanted, guess + 2) + start - 1
             vertices = first or (self.placed(guess) if guess <= self.most else None)
@@ -154,7 +154,7 @@ class Search:
                 curve = self.moved(vertices, settings.rounds)
                 yield curve
                 # Masters stay off by some tolerances for long, and may yet pass.
-                near = 0.0 if len(self.samples.Q) == 1 else 4 * self.near
+                near = 0.0 if alone else 4 * self.near
                 slow = slow + 1 if curve.error > max(0.9 * least, near) else 0
                 least = min(least, curve.error)
                 if curve.error == inf or slow == SLOW:
