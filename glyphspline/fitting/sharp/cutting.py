@@ -65,17 +65,17 @@ def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: SharpSet
         cubics: (K, m, 4, 2) the contours' segments in each master. contours: their degrees and offsets.
     """
     near = settings.near
-    *arrays, simple, ways, ends, enough = simplest(
+    *arrays, simple, ways, ends, enough, left = simplest(
         cubics, contours.degrees, contours.offsets, near, settings.angle, settings.line, settings.c2,
         settings.cubic_rounds,
     )  # fmt: skip
     chains, pieces = Chains(*arrays), Pieces(*simple)
     parts: list[Pieces] = []
     kept = 0
-    for c in np.flatnonzero(~enough).tolist():
+    for c, joints in zip(np.flatnonzero(~enough).tolist(), left, strict=True):
         a, b = ends[c : c + 2].tolist()
         own = part(pieces, a, b)
-        parts += [part(pieces, kept, a), *fit_contour(chains.joints(own, settings), own, ways[a:b], settings)]
+        parts += [part(pieces, kept, a), *fit_contour(joints, own, ways[a:b], settings)]
         kept = b
     if kept:
         pieces = joined([*parts, part(pieces, kept, len(ways))], len(cubics))

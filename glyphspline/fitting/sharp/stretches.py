@@ -93,6 +93,7 @@ def simplest(
     own, kinds, starts = np.empty((K, most, 4, 2)), np.empty(most, np.int64), np.zeros(C + 1, np.int64)
     flipped, enough, firsts = np.zeros(C, np.bool_), np.ones(C, np.bool_), np.zeros(C + 1, np.int64)
     P, ways, count = 2 * most, np.zeros(2 * most, np.int64), 0
+    left: list[Joints] = []
     pieces = Pieces(
         np.empty(P, np.int64), np.empty((P, 2), np.int64), np.empty(P, np.int64), np.zeros(P, np.int64),
         2 * np.arange(P + 1), np.empty((2 * P, K, 2)), np.empty(2 * P), np.zeros((P, K, 2, 2)), np.zeros(P),
@@ -112,6 +113,8 @@ def simplest(
         last = fit_stretches(around, c, pieces, ways, count, near, rounds)
         for r in range(count, last):
             enough[c] = enough[c] and pieces.errors[r] <= near and ways[r] == 0
+        if not enough[c]:
+            left.append(around)
         firsts[c + 1] = count = last
     simple = (
         pieces.contour[:count], pieces.joints[:count], pieces.spans[:count], pieces.closed[:count],
@@ -119,7 +122,7 @@ def simplest(
         pieces.errors[:count],
     )  # fmt: skip
     total = starts[C]
-    return own[:, :total].copy(), kinds[:total], starts, flipped, simple, ways[:count], firsts, enough
+    return own[:, :total].copy(), kinds[:total], starts, flipped, simple, ways[:count], firsts, enough, left
 
 
 @compiled
