@@ -229,7 +229,7 @@ def set_directions(
 def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> FloatArray:
     """(N,) places of the samples, evenly spaced in each segment; the last is that of the first joint, a lap later.
 
-    The outline between two samples is straight to three tenths of the tolerance in every master.
+    The outline between two samples is straight to a seventh of the tolerance in every master.
     """
     m = len(degrees)
     counts, total = np.empty(m, dtype=np.int64), 0
@@ -242,7 +242,7 @@ def even_places(cubics: FloatArray, degrees: IntArray, tolerance: float) -> Floa
             for k in range(1, 3):
                 x, y = p[k + 1, 0] - 2 * p[k, 0] + p[k - 1, 0], p[k + 1, 1] - 2 * p[k, 1] + p[k - 1, 1]
                 bend = max(bend, np.hypot(x, y))
-            wanted = max(size / (20 * tolerance), np.sqrt(0.75 * bend / (0.3 * tolerance)))
+            wanted = max(size / (12 * tolerance), np.sqrt(0.75 * bend / (0.15 * tolerance)))
             most = min(max(np.ceil(wanted), most), 40.0)
         counts[j] = int(most)
         total += counts[j]

@@ -34,8 +34,8 @@ of 35,142 segments.
 """
 
 LONG = 8
-"""Spans of a curve beyond which vertices are added twice as fast: each try of a long one takes long, and removals come
-later. It saves an eighth of the time on brush faces, for a number in a thousand."""
+"""Spans of a single outline's curve beyond which vertices are added twice as fast: each try of a long one takes long,
+and removals come later. It saves an eighth of the time on brush faces, for a number in a thousand."""
 
 SLOW = 3
 """Curves in a row, each with more vertices, that are hardly nearer than the best before, after which a guess is given
@@ -105,7 +105,8 @@ def fit_spline(
     if begun:
         points = np.ascontiguousarray(piece.vertices.swapaxes(0, 1))
         first = Vertices(points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents[0]))
-    best = first_good(search.curves(first, guess, wanted), lambda curve: (int(not curve.error <= near),))
+    starts = STARTS if given or not alone else 1  # a stretch that none follows is cut in two, and its parts begin anew
+    best = first_good(search.curves(first, guess, wanted, starts), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
         return none
     found = search.piece(piece, search.thinned(best, max(least, begun)) if best.spans > begun else best)
@@ -136,16 +137,16 @@ class Search:
         """What is followed."""
         return self.samples.Q, self.samples.directions, self.samples.free
 
-    def curves(self, first: Vertices | None, guess: int, wanted: int) -> Iterator[TriedCurve]:
+    def curves(self, first: Vertices | None, guess: int, wanted: int, starts: int) -> Iterator[TriedCurve]:
         """Curves whose vertices have moved, each with more vertices where the last one misses the tolerance; where that
         leads nowhere, from a new guess on.
 
         Args:
             first: the vertices to begin with; None to begin with ``guess`` spans, and then with more.
-            wanted: spans by the density.
+            wanted: spans by the density. starts: most guesses.
         """
         settings, alone = self.settings, len(self.samples.Q) == 1
-        for start in range(1 if alone or first else STARTS):
+        for start in range(1 if first else starts):
             if start > 0:
                 guess = max(wanted, guess + 2) + start - 1
             vertices = first or (self.placed(guess) if guess <= self.most else None)
@@ -160,7 +161,7 @@ class Search:
                 if curve.error == inf or slow == SLOW:
                     break
                 insertions += 1
-                growth = settings.growth * (2 if curve.spans > LONG else 1)
+                growth = settings.growth * (2 if alone and curve.spans > LONG else 1)
                 vertices = self.with_more(curve, growth if insertions <= PATIENCE else inf)
 
     def thinned(self, best: TriedCurve, least: int) -> TriedCurve:
@@ -221,7 +222,7 @@ class Search:
         settings, k = self.settings, vertices.points.shape[1] - 1 + self.closed
         limits = (self.near, settings.margin, settings.residual)
         steps = settings.few_rounds if k <= 3 else rounds
-        steps += 1 if len(self.samples.Q) > 1 else 0  # masters get near later
+        steps = steps if len(self.samples.Q) == 1 else 4 * steps // 3  # masters get near later
         error, points, tips, beziers, h, errors = move_vertices(
             vertices[:], self.closed, self.outline, limits, steps, i, k if reach is None else reach
         )  # fmt: skip
