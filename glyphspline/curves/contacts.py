@@ -42,6 +42,8 @@ def all_crossings(cubics: FloatArray, offsets: IntArray, met: FloatArray) -> Flo
     Returns:
         (L, 4) the contours, and the places, of a contact those where it begins.
     """
+    if not len(met):
+        return np.empty((0, 4))
     touches = ~np.isnan(met[:, 4])
     found = [met[~touches, :4]]
     largest = RADIUS * float(np.abs(cubics).max(initial=0.0))

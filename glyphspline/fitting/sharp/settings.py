@@ -47,7 +47,7 @@ class SharpSettings(NamedTuple):
 
 EFFORTS = {
     "fast": partial(
-        SharpSettings, chain_rounds=4, cubic_rounds=4, rounds=5, few_rounds=9, guess=1.0, growth=0.4,
+        SharpSettings, chain_rounds=4, cubic_rounds=4, rounds=5, few_rounds=12, guess=1.0, growth=0.4,
         passes=1, failures=3, dear=0.5, removal_rounds=2, reach=3,
     ),
     "best": partial(
