@@ -35,8 +35,8 @@ of 35,142 segments.
 
 LONG = 8
 """Spans of a single outline's curve beyond which vertices are added twice as fast: each try of a long one takes long,
-and removals come later. Without it 60 glyphs of a brush face take a tenth more time, and have 92 of 6,991 segments more.
-"""
+and removals come later. Without it 60 glyphs of a brush face take a tenth more time, and have 92 of 6,991 segments
+more."""
 
 SLOW = 3
 """Curves in a row, each with more vertices, that are hardly nearer than the best before, after which a guess is given
