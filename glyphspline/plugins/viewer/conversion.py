@@ -25,6 +25,7 @@ from ...fitting.options import Options
 from ...fitting.results import ContourResult, GlyphResult, as_glyph
 from ...hooks import service
 from ...interpolation.result import Interpolation
+from ...outlines.contour_arrays import polylines
 from ...outlines.joins import joins
 from ...outlines.masters import MasterContour
 from ...outlines.outline import Contour, Contours, Outline
@@ -34,7 +35,7 @@ from ...types import BoolArray, FloatArray, rounded_up
 from ...writers.json_file import finite
 from ...writers.svg.comb import curvature_scale
 from ...writers.svg.document import code_points
-from ...writers.svg.path_data import path_data, polyline_data
+from ...writers.svg.path_data import path_data, polylines_data
 from .requests import Moved, PageState
 
 COMPARED = (1, 2, 3)
@@ -219,7 +220,7 @@ def result_payload(result: GlyphResult) -> dict[str, Any]:
         "notes": list(result.notes),
         "steps": len(shown_steps(updates_of(result))),
         "residuals": [[finite(error) for error in arc.residuals.tolist()] for arc in arcs],
-        "intervals": "".join(interval_data(arc) for arc in arcs),
+        "intervals": intervals_data(arcs),
         "measures": [{k: finite(v) for k, v in asdict(contour.measures).items()} for contour in result.contours],
         **curves_payload(arcs),
     }
@@ -275,7 +276,7 @@ def smooth_joints(contour: MasterContour) -> BoolArray:
 def curves_payload(arcs: list[Interpolation]) -> dict[str, Any]:
     """Control polygons and footpoints of curves."""
     return {
-        "control": "".join(polyline_data(arc.spline.control_points, DIGITS, closed=arc.spline.closed) for arc in arcs),
+        "control": lines_data([arc.spline.control_points for arc in arcs], [arc.spline.closed for arc in arcs]),
         "controls": [point for arc in arcs for point in points(arc.spline.control_points)],
         "feet": [point for arc in arcs for point in points(arc.spline(arc.parameters))],
     }
@@ -288,13 +289,21 @@ def step_payload(updates: int, curves: list[Interpolation]) -> dict[str, Any]:
     return {"step": updates, "error": error, "result": path_data(shapes, DIGITS), **curves_payload(curves)}
 
 
-def interval_data(arc: Interpolation) -> str:
-    """The parts of the curve searched for footpoints, as path data, without those of a single point."""
-    wide = arc.intervals[:, 1] > arc.intervals[:, 0]
-    a, b = arc.intervals[wide].T
-    # Points of the polyline that shows the interval of a footpoint.
-    t = a[:, None] + (b - a)[:, None] * np.linspace(0, 1, 7)
-    return "".join(polyline_data(part, DIGITS) for part in arc.spline(t))
+def intervals_data(arcs: list[Interpolation]) -> str:
+    """The parts of curves searched for footpoints, as path data, without those of a single point."""
+    parts: list[FloatArray] = []
+    for arc in arcs:
+        wide = arc.intervals[:, 1] > arc.intervals[:, 0]
+        a, b = arc.intervals[wide].T
+        # Points of the polyline that shows the interval of a footpoint.
+        t = a[:, None] + (b - a)[:, None] * np.linspace(0, 1, 7)
+        parts += list(arc.spline(t))
+    return lines_data(parts, [False] * len(parts))
+
+
+def lines_data(lines: Sequence[FloatArray], closed: Sequence[bool]) -> str:
+    """Path data of polylines, all in one call."""
+    return polylines_data(polylines(lines, closed), DIGITS)[0].text if lines else ""
 
 
 def points(array: FloatArray) -> list[list[float]]:
