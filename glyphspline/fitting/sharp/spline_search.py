@@ -99,7 +99,7 @@ def fit_spline(
     # segments with "fast"; without a limit 289 more, for 1.4 times the time.
     guess = most if limited else 2 if not closed and missed < 30.0 * near else max(least, wanted)
     none = piece._replace(errors=np.array([inf]))
-    if max(guess, begun) > most:
+    if max(guess, least, begun) > most:
         return none
     search = Search(samples, closed, near, settings, most)
     first = None
