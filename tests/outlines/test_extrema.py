@@ -139,7 +139,7 @@ def test_extrema_of_the_outlines_read_back_have_points(
 def test_quadratics_have_points_at_nine_of_ten_extrema_of_the_splines_they_are_made_of(tmp_path: Path) -> None:
     source = open_font(FONTS / "kouzan-gyosho.otf")
     em, options = source.metrics.units_per_em, gs.Options(tolerance=fitting_tolerance(1.0, "ttf"))
-    results = [gs.convert(source.outline(name), options) for name in source.select(text="O&8B")]
+    results = [gs.convert(source.outline(name), options) for name in source.select(text="O&8B龍")]
     write_font(source, results, tmp_path / "out.ttf", tolerance=1.0)
     written, every, met = open_source(tmp_path / "out.ttf"), 0, 0
     for one in results:
@@ -150,7 +150,7 @@ def test_quadratics_have_points_at_nine_of_ten_extrema_of_the_splines_they_are_m
                     if (arm[:, k] == 0).all() and (np.abs(arm[:, 1 - k]) > 1.0).all():
                         level = (arms[:, :, k] == 0).all(axis=1) & (np.hypot(*(ends - end).T) < 0.04 * em)
                         every, met = every + 1, met + bool((np.abs(ends[level, k] - end[k]) <= 1.0).any())
-    assert met >= 0.9 * every > 12
+    assert met >= 0.9 * every > 15
 
 
 @pytest.mark.parametrize("flavour", ["otf", "ttf"])
