@@ -138,6 +138,11 @@ class Search:
         """What is followed."""
         return self.samples.Q, self.samples.directions, self.samples.free
 
+    @property
+    def alone(self) -> bool:
+        """Whether the outline is its only master."""
+        return len(self.samples.Q) == 1
+
     def curves(self, first: Vertices | None, guess: int, wanted: int, starts: int) -> Iterator[TriedCurve]:
         """Curves whose vertices have moved, each with more vertices where the last one misses the tolerance; where that
         leads nowhere, from a new guess on.
@@ -146,7 +151,7 @@ class Search:
             first: the vertices to begin with; None to begin with ``guess`` spans, and then with more.
             wanted: spans by the density. starts: most guesses.
         """
-        settings, alone = self.settings, len(self.samples.Q) == 1
+        settings = self.settings
         for start in range(1 if first else starts):
             if start > 0:
                 guess = max(wanted, guess + 2) + start - 1
@@ -156,13 +161,13 @@ class Search:
                 curve = self.moved(vertices, settings.rounds)
                 yield curve
                 # Masters stay off by some tolerances for long, and may yet pass.
-                near = 0.0 if alone else 4 * self.near
+                near = 0.0 if self.alone else 4 * self.near
                 slow = slow + 1 if curve.error > max(0.9 * least, near) else 0
                 least = min(least, curve.error)
                 if curve.error == inf or slow == SLOW:
                     break
                 insertions += 1
-                growth = settings.growth * (2 if alone and curve.spans > LONG else 1)
+                growth = settings.growth * (2 if self.alone and curve.spans > LONG else 1)
                 vertices = self.with_more(curve, growth if insertions <= PATIENCE else inf)
 
     def thinned(self, best: TriedCurve, least: int) -> TriedCurve:
@@ -223,7 +228,7 @@ class Search:
         settings, k = self.settings, vertices.points.shape[1] - 1 + self.closed
         limits = (self.near, settings.margin, settings.residual)
         steps = settings.few_rounds if k <= 3 else rounds
-        steps = steps if len(self.samples.Q) == 1 else 4 * steps // 3  # masters get near later
+        steps = steps if self.alone else 4 * steps // 3  # masters get near later
         error, points, tips, beziers, h, errors = move_vertices(
             vertices[:], self.closed, self.outline, limits, steps, i, k if reach is None else reach
         )  # fmt: skip

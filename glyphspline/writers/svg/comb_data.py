@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
+from math import isnan
 from typing import NamedTuple
 
 import numpy as np
@@ -61,7 +62,7 @@ def _of_batch(results: Sequence[GlyphResult], whose: Whose, scale: float, in_cor
     drawn, numbers = text.tobytes().decode("ascii"), np.diff(corners[1][glyphs]).tolist()
     found = []
     for own, box, *counts in zip(ends.tolist(), (boxes / 10.0**precision).tolist(), cut.tolist(), numbers, strict=True):
-        some = box[0] == box[0]
+        some = not isnan(box[0])
         texts = [drawn[a:b] for a, b in pairwise(own)] if some else []
         found.append(GlyphComb(texts, tuple(box) if some else None, *(counts if some else (0, 0))))
     return found
