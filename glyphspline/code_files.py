@@ -42,7 +42,7 @@ SUFFIX = ".nbc"
 OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 """What Numba is asked for; part of the stamp."""
 
-MAKERS = ("intrinsics.py", "llvm.py")
+MAKERS = ("intrinsics.py", "linking.py", "llvm.py")
 """Files of the package that are part of all code."""
 
 

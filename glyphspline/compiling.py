@@ -29,6 +29,7 @@ from numba.extending import models, register_model, typeof_impl
 from . import code_files
 from .code_files import OPTIONS, SHIPPED, SUFFIX, NoCodeError, kept
 from .files import write_whole
+from .linking import Linked, Whole
 from .llvm import type_of
 
 used: set[str] = set()
@@ -74,8 +75,7 @@ def dispatcher(function: Callable[..., Any], role: str, **options: bool) -> Any:
     """Numba's dispatcher for a function and its kept code. It compiles only while :meth:`.Kept.compiling` is open."""
     jit: Any = njit
     made = jit(**OPTIONS, **options)(function)
-    if role == "inner":
-        made._compiler.pipeline_class = _Inner
+    made._compiler.pipeline_class = _Inner if role == "inner" else _Entry
     made._cache = _Files(function, role)
     return made
 
@@ -83,31 +83,16 @@ def dispatcher(function: Callable[..., Any], role: str, **options: bool) -> Any:
 class _Inner(Compiler):  # type: ignore[misc, unused-ignore]
     """How functions for compiled callers are compiled."""
 
+    linked_as: type[JITCodeLibrary] = Linked
+
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
-        super().__init__(typing, target, _Linked(target.codegen(), "linked"), *rest)
+        super().__init__(typing, target, self.linked_as(target.codegen()), *rest)
 
 
-class _Linked(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
-    """Code that is linked into that of its callers, and only there is optimised and made machine code.
+class _Entry(_Inner):
+    """How functions for callers in Python are compiled."""
 
-    As it is nowhere called by itself, all that would be for nothing; and once more in the next caller above.
-    """
-
-    def __init__(self, codegen: Any, name: str) -> None:
-        super().__init__(codegen, name)
-        self.enable_object_caching()
-
-    def _optimize_final_module(self) -> None:
-        """Set the code aside for the callers, and make the rest of what is left: the places of environments."""
-        self._finalize_dynamic_globals()
-        whole = self._final_module
-        places = [str(own) for own in whole.global_variables if own.name.startswith("_ZN08NumbaEnv")]
-        for one in whole.functions:
-            if not one.is_declaration and one.linkage == llvm.Linkage.external:
-                one.linkage = "linkonce_odr"
-        self._shared_module = whole
-        self._final_module = llvm.parse_assembly("\n".join(places))
-        self._final_module.name = whole.name
+    linked_as = Whole
 
 
 def callback_of(function: Callable[..., Any], signature: str) -> Any:
