@@ -214,6 +214,7 @@ def _contacts(touching: FloatArray, one: Strand, other: Strand, radius: float) -
     ordered = np.concatenate([ordered[starts, :2], ordered[np.append(starts[1:], 0) - 1, 2:]], axis=1)
     along = [one.positions(ordered[:, k]) for k in (0, 2)]
     across = [other.positions(ordered[:, k]) for k in (1, 3)]
+    total = other.total
     found: list[_Contact] = []
     still: list[_Contact] = []  # those that later pairs may hang on
     for (a, b, a_end, b_end), s, s_end, *beside in zip(
@@ -222,8 +223,8 @@ def _contacts(touching: FloatArray, one: Strand, other: Strand, radius: float) -
         still = [contact for contact in still if s - contact.position <= radius]
         for contact in reversed(still):
             # From the last ends of chords of a contact that the next pair of chords may hang on.
-            away = (abs(x - y) % other.total for x in beside for y in contact.beside[-8:])
-            if any(min(gap, other.total - gap) <= radius for gap in away):
+            away = (abs(x - y) % total for x in beside for y in contact.beside[-8:])
+            if any(gap <= radius or total - gap <= radius for gap in away):
                 if a_end > contact.end[0]:
                     contact.end, contact.position = (a_end, b_end), s_end
                 contact.beside += beside

@@ -9,6 +9,7 @@ fitted, and then one spline is sought that stores less. A stretch that no spline
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -65,65 +66,64 @@ def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: SharpSet
         cubics: (K, m, 4, 2) the contours' segments in each master. contours: their degrees and offsets.
     """
     near = settings.near
-    *arrays, simple, ways, ends, enough, left = simplest(
+    *arrays, simple, ways, enough, left = simplest(
         cubics, contours.degrees, contours.offsets, near, settings.angle, settings.line, settings.c2,
         settings.cubic_rounds,
     )  # fmt: skip
     chains, pieces = Chains(*arrays), Pieces(*simple)
-    parts: list[Pieces] = []
-    kept = 0
-    for c, joints in zip(np.flatnonzero(~enough).tolist(), left, strict=True):
-        a, b = ends[c : c + 2].tolist()
-        own = part(pieces, a, b)
-        parts += [part(pieces, kept, a), *fit_contour(joints, own, ways[a:b], settings)]
-        kept = b
-    if kept:
-        pieces = joined([*parts, part(pieces, kept, len(ways))], len(cubics))
+    splines = Splines(dict(zip(np.flatnonzero(~enough).tolist(), left, strict=True)), ways.tolist(), settings)
+    pieces, _ = _replaced(pieces, ~(pieces.errors <= near) | (ways > 0), splines)
     pieces = turned(pieces, chains.offsets, chains.flipped)
-    poor = ~(pieces.errors <= near)
-    if poor.any():
-        pieces, _ = _replaced(pieces, poor, chains.source)
+    pieces, _ = _replaced(pieces, ~(pieces.errors <= near), lambda q, piece: [chains.source(piece)])
     return chains, pieces
 
 
-def _replaced(pieces: Pieces, which: BoolArray, other: Callable[[Pieces], Pieces]) -> tuple[Pieces, IntArray]:
+def _replaced(
+    pieces: Pieces, which: BoolArray, others: Callable[[int, Pieces], list[Pieces]]
+) -> tuple[Pieces, IntArray]:  # fmt: skip
     """Pieces with others in the place of some, and which of the given ones each is; -1 for others."""
-    found, same, kept = [], [], 0
-    for q in [*np.flatnonzero(which).tolist(), len(which)]:
-        found.append(part(pieces, kept, q))
-        same.append(np.arange(kept, q))
-        if q < len(which):
-            found.append(other(part(pieces, q, q + 1)))
-            same.append(np.full(len(found[-1].spans), -1))
-        kept = q + 1
-    return joined(found, pieces.vertices.shape[1]), np.concatenate(same)
-
-
-def fit_contour(joints: Joints, pieces: Pieces, ways: IntArray, settings: SharpSettings) -> list[Pieces]:
-    """A contour's lines and arcs, in the direction in which it is fitted: splines where what is simplest is not near
-    enough.
-
-    Args:
-        pieces, ways: of it, from :func:`.stretches.simplest`.
-    """
-    near, found, kept = settings.near, list[Pieces](), 0
-    parts: list[Pieces] = []
-    for q, (error, way) in enumerate(zip(pieces.errors.tolist(), ways.tolist(), strict=True)):
-        if error <= near and way == 0:
-            continue
-        piece, most = part(pieces, q, q + 1), most_spans(parts, near) if way == WHOLE else MOST
-        if not error <= near:
-            piece = fit_spline(joints, piece, near, settings, False, most)
+    found, kept, counts = list[Pieces](), 0, np.ones(len(which), dtype=np.int64)
+    for q in np.flatnonzero(which).tolist():
         if kept < q:
             found.append(part(pieces, kept, q))
-        if way == PART:
-            parts.append(piece)
-        else:
-            good = bool(piece.errors[0] <= near)
-            found += [piece] if good else (parts if most < MOST else in_two(joints, piece, near, settings))
-            parts = []
+        own = others(q, part(pieces, q, q + 1))
+        counts[q] = sum(len(one.spans) for one in own)
+        found += own
         kept = q + 1
-    return [*found, part(pieces, kept, len(ways))]
+    same = np.where(which, -1, np.arange(len(which))).repeat(counts)
+    if not kept:
+        return pieces, same
+    return joined([*found, part(pieces, kept, len(which))], pieces.vertices.shape[1]), same
+
+
+@dataclass
+class Splines:
+    """What takes the place of stretches that their line or cubic does not follow, one after the other.
+
+    Attributes:
+        joints: of their contours, in the direction in which these are fitted.
+        ways: of all stretches, from :func:`.stretches.simplest`.
+        parts: of a stretch that has corners that do not show, so far.
+    """
+
+    joints: dict[int, Joints]
+    ways: list[int]
+    settings: SharpSettings
+    parts: list[Pieces] = field(default_factory=list)
+
+    def __call__(self, q: int, piece: Pieces) -> list[Pieces]:
+        """What takes the place of stretch q; nothing for a part, as the whole stretch is next."""
+        joints, way, near = self.joints[int(piece.contour[0])], self.ways[q], self.settings.near
+        most = most_spans(self.parts, near) if way == WHOLE else MOST
+        if not piece.errors[0] <= near:
+            piece = fit_spline(joints, piece, near, self.settings, False, most)
+        if way == PART:
+            self.parts.append(piece)
+            return []
+        parts, self.parts = self.parts, []
+        if piece.errors[0] <= near:
+            return [piece]
+        return parts if most < MOST else in_two(joints, piece, near, self.settings)
 
 
 def in_two(joints: Joints, piece: Pieces, near: float, settings: SharpSettings) -> list[Pieces]:
@@ -169,7 +169,7 @@ def refit(
     Returns:
         The pieces, and which of the given ones each is; -1 for others.
     """
-    return _replaced(pieces, poor, lambda piece: _closer(chains, piece, shares, settings))
+    return _replaced(pieces, poor, lambda q, piece: [_closer(chains, piece, shares, settings)])
 
 
 def _closer(chains: Chains, piece: Pieces, shares: FloatArray, settings: SharpSettings) -> Pieces:

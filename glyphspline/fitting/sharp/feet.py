@@ -92,8 +92,12 @@ def measure(
             if closed or 0 < j < n - 1:
                 s0, at0 = (span[j - 1], x[j - 1]) if j > 0 else (-k, 0.0)
                 s, at = (s0, at0) if j > 0 else (0, 0.0)
-                if known[0] and (known[1][v, j] > s0 or (known[1][v, j] == s0 and known[2][v, j] > at0)):
-                    s, at = known[1][v, j], known[2][v, j]
+                if known[0]:
+                    if known[1][v, j] > s0 or (known[1][v, j] == s0 and known[2][v, j] > at0):
+                        s, at = known[1][v, j], known[2][v, j]
+                elif j > 0:  # as far on as the samples are apart
+                    at += length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1]) / h[_wrapped(s, k) + 2]
+                    at = min(at, 1.0)
                 end = k if not closed else (span[0] + k + 1 if j > 0 else k)
                 span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
             else:
@@ -119,17 +123,16 @@ def _add_between(
     span, x, e, nx, ny, count = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v], n
     for j in range(n if closed else n - 1):
         i = j + 1 if j + 1 < n else 0
-        lap = k if i == 0 else 0
-        step_x, step_y = Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
-        chord = length(step_x, step_y)
-        own = x[i] * h[_wrapped(span[i] + lap, k) + 2] - x[j] * h[_wrapped(span[j], k) + 2]
-        if span[i] + lap == span[j]:
-            own = (x[i] - x[j]) * h[_wrapped(span[j], k) + 2]
-        for s in range(span[j], span[i] + lap):
-            own += h[_wrapped(s, k) + 2]
-        if chord == 0.0 or own <= 0.0:
+        last, step_x, step_y = span[i] + (k if i == 0 else 0), Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
+        spans, own = (last + x[i]) - (span[j] + x[j]), (x[i] - x[j]) * h[_wrapped(span[j], k) + 2]
+        if last != span[j]:
+            own = x[i] * h[_wrapped(last, k) + 2] - x[j] * h[_wrapped(span[j], k) + 2]
+            for s in range(span[j], last):
+                own += h[_wrapped(s, k) + 2]
+        square = step_x * step_x + step_y * step_y
+        if square == 0.0 or own <= 0.0 or (spans <= 0.25 and own * own <= 4 * square):
             continue
-        spans = (span[i] + lap + x[i]) - (span[j] + x[j])
+        chord = np.sqrt(square)
         wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
         pieces = min(int(wanted) + 2, EXTRA + 1)
         for r in range(1, pieces):
@@ -141,7 +144,7 @@ def _add_between(
                 whole = h[_wrapped(s, k) + 2]
             at = left / whole
             cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
-            along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / (chord * chord), 0.0), 1.0)
+            along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / square, 0.0), 1.0)
             ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
             away = length(ex, ey)
             # Points of the curve between two feet count from this share of the tolerance on.
@@ -253,18 +256,6 @@ def _wrapped(s: int, k: int) -> int:
     if s >= k:
         s -= k
     return s if s >= 0 else s + k
-
-
-@compiled
-def copy_rows(source: Rows, target: Rows) -> None:
-    """Copy the rows in use."""
-    for v in range(len(source.used)):
-        target.used[v, 0] = source.used[v, 0]
-        for r in range(source.used[v, 0]):
-            target.span[v, r], target.x[v, r], target.e[v, r] = source.span[v, r], source.x[v, r], source.e[v, r]
-            target.nx[v, r], target.ny[v, r] = source.nx[v, r], source.ny[v, r]
-        for r in range(source.slip.shape[1]):
-            target.slip[v, r], target.lever[v, r] = source.slip[v, r], source.lever[v, r]
 
 
 @compiled

@@ -42,8 +42,8 @@ class Curve(NamedTuple):
         p: (K, room, 2) the vertices: k + 1 of an arc, k of a closed curve.
         X: (K, room + 2, 2) the control points: slot i in row i + 1.
         h: (room + 4,) the knot intervals: that of span s in entry s + 2.
-        W: (room, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[v, s : s + 4]``.
-        b: (K, room, 4, 2) the Bézier points.
+        W: (room - 1, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[v, s : s + 4]``.
+        b: (K, room - 1, 4, 2) the Bézier points.
         t: (room,) footpoints of the vertices, as signed shares of the span before or after them.
         bounds: (room, 2) the ends of their intervals (Lemma 2), likewise.
         e: (K, room, 2) vertices less footpoints. d: (K, 2) derivatives at the last footpoint looked at.
@@ -68,30 +68,23 @@ def empty_curve(masters: int, most: int, closed: int) -> Curve:
     size[1] = closed
     return Curve(
         size, np.empty((masters, room, 2)), np.empty((masters, room + 2, 2)), np.zeros(room + 4),
-        np.empty((room, 4, 4)), np.empty((masters, room, 4, 2)), np.zeros(room), np.empty((room, 2)),
+        np.empty((most, 4, 4)), np.empty((masters, most, 4, 2)), np.zeros(room), np.empty((room, 2)),
         np.empty((masters, room, 2)), np.empty((masters, 2)),
     )  # fmt: skip
 
 
 @compiled
-def copy_curve(source: Curve, target: Curve) -> None:
-    """Copy what is in use of a curve into the arrays of another one of the same kind."""
+def copy_points(source: Curve, target: Curve) -> None:
+    """Copy the vertices, control points and footpoints of a curve into the arrays of another one of the same kind."""
     k = target.size[0] = source.size[0]
-    copy_first(source.h, target.h, k + 4)
-    copy_first(source.W.reshape(-1), target.W.reshape(-1), 16 * k)
-    copy_first(source.t, target.t, k + 1)
-    copy_first(source.bounds.reshape(-1), target.bounds.reshape(-1), 2 * (k + 1))
+    for i in range(k + 1):
+        target.t[i] = source.t[i]
+        target.bounds[i, 0], target.bounds[i, 1] = source.bounds[i, 0], source.bounds[i, 1]
     for v in range(len(source.p)):
-        copy_first(source.p[v].reshape(-1), target.p[v].reshape(-1), 2 * (k + 1))
-        copy_first(source.X[v].reshape(-1), target.X[v].reshape(-1), 2 * (k + 3))
-        copy_first(source.b[v].reshape(-1), target.b[v].reshape(-1), 8 * k)
-
-
-@compiled
-def copy_first(source: FloatArray, target: FloatArray, n: int) -> None:
-    """Copy the first n numbers of an array: in a third of the time of an assignment of slices."""
-    for i in range(n):
-        target[i] = source[i]
+        for i in range(k + 1):
+            target.p[v, i, 0], target.p[v, i, 1] = source.p[v, i, 0], source.p[v, i, 1]
+        for i in range(k + 3):
+            target.X[v, i, 0], target.X[v, i, 1] = source.X[v, i, 0], source.X[v, i, 1]
 
 
 @compiled
@@ -122,16 +115,17 @@ def begun(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
 
 
 @compiled
-def result_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Copies of a curve's vertices (K, n, 2), the tips (K, 2, 2) of its handles, and Bézier points (K, k, 4, 2)."""
+def result_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Copies of a curve's vertices (K, n, 2), tips of handles (K, 2, 2), Bézier points (K, k, 4, 2), knot intervals."""
     masters, k, closed = len(curve.p), curve.size[0], curve.size[1]
-    p, tips, b = np.empty((masters, k + 1 - closed, 2)), np.zeros((masters, 2, 2)), np.empty((masters, k, 4, 2))
+    p, tips = np.empty((masters, k + 1 - closed, 2)), np.zeros((masters, 2, 2))
     for v in range(masters):
-        copy_first(curve.p[v].reshape(-1), p[v].reshape(-1), 2 * (k + 1 - closed))
-        copy_first(curve.b[v].reshape(-1), b[v].reshape(-1), 8 * k)
-        for axis in range(0 if closed else 2):
-            tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
-    return p, tips, b
+        for axis in range(2):
+            for i in range(k + 1 - closed):
+                p[v, i, axis] = curve.p[v, i, axis]
+            if not closed:
+                tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
+    return p, tips, curve.b.copy(), curve.h.copy()
 
 
 @compiled
@@ -206,11 +200,14 @@ def iterate(curve: Curve, tolerance: float, most: int) -> float:
             W, b, own = curve.W, curve.b[v], X[v]
             for axis in range(2 if closed else 0):
                 own[0, axis], own[k + 1, axis], own[k + 2, axis] = own[k, axis], own[1, axis], own[2, axis]
-            for s in range(k):
-                for r in range(4):
-                    for axis in range(2):
-                        total = W[s, r, 0] * own[s, axis] + W[s, r, 1] * own[s + 1, axis]
-                        b[s, r, axis] = total + W[s, r, 2] * own[s + 2, axis] + W[s, r, 3] * own[s + 3, axis]
+            for axis in range(2):
+                begin = W[0, 0, 0] * own[0, axis] + W[0, 0, 1] * own[1, axis] + W[0, 0, 2] * own[2, axis]
+                for s in range(k):  # each span begins where the last one ends; the other weights are 0
+                    x, y = own[s + 1, axis], own[s + 2, axis]
+                    b[s, 0, axis], b[s, 1, axis] = begin, W[s, 1, 1] * x + W[s, 1, 2] * y
+                    b[s, 2, axis] = W[s, 2, 1] * x + W[s, 2, 2] * y
+                    begin = W[s, 3, 1] * x + W[s, 3, 2] * y + W[s, 3, 3] * own[s + 3, axis]
+                    b[s, 3, axis] = begin
         if n == most:
             break
         error = 0.0

@@ -148,7 +148,7 @@ def shift_knot(curve: Curve, i: int, delta: float) -> None:
 def _add_row(
     gram: FloatArray, J: FloatArray, moves: FloatArray, B: FloatArray, nx: float, ny: float, e: float, weight: float
 ) -> None:
-    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny); of the matrix its lower half."""
+    """Ask that B[0] b_0 + ... + B[3] b_3 of a span change by ``e`` along (nx, ny)."""
     for u in range(8):
         J[u] = 0.0
     for r in range(4):
@@ -159,7 +159,7 @@ def _add_row(
         gram[8, u] += weight * e * J[u]
     for u in range(8):
         scaled = weight * J[u]
-        for v in range(u + 1):
+        for v in range(8):  # both halves of the matrix: whole rows become SIMD
             gram[u, v] += scaled * J[v]
 
 
@@ -192,10 +192,6 @@ def add_rows(
             x, y = middle_normal(b[s])
             wanted = -third_along(b, s, x, y)
             _add_row(gram[s], J, moves[s], B, x, y, wanted, wobble / fifth_power(h[s + 2]))
-        for s in range(k):
-            for u in range(8):
-                for w in range(u):
-                    gram[s, w, u] = gram[s, u, w]
 
 
 @inlined

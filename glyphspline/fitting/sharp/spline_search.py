@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import inf
 from typing import NamedTuple
 
@@ -57,20 +58,16 @@ class TriedCurve(NamedTuple):
     """A curve of k spans in K masters; see :func:`.vertex_steps.move_vertices`.
 
     Attributes:
-        error: the largest distance of a sample. vertices: its vertices, and tips of handles.
+        spans: k. error: the largest distance of a sample. vertices: its vertices, and tips of handles.
         beziers: (K, k, 4, 2). h: the knot intervals. errors: (k,) the largest distance in each span.
     """
 
+    spans: int
     error: float
     vertices: Vertices
     beziers: FloatArray
     h: FloatArray
     errors: FloatArray
-
-    @property
-    def spans(self) -> int:
-        """k."""
-        return len(self.errors)
 
 
 def fit_spline(
@@ -133,12 +130,17 @@ class Search:
     most: int
     guessed: set[int] = field(default_factory=set)
 
-    @property
+    @cached_property
     def outline(self) -> tuple[FloatArray, FloatArray, IntArray]:
         """What is followed."""
         return self.samples.Q, self.samples.directions, self.samples.free
 
-    @property
+    @cached_property
+    def limits(self) -> tuple[float, float, float]:
+        """How near the curve has to be to the samples; margin and residual of the interpolation."""
+        return self.near, self.settings.margin, self.settings.residual
+
+    @cached_property
     def alone(self) -> bool:
         """Whether the outline is its only master."""
         return len(self.samples.Q) == 1
@@ -178,7 +180,7 @@ class Search:
         unless it was made before.
         """
         settings = self.settings
-        for n in range(settings.passes):
+        for n in range(settings.passes if best.spans > least else 0):
             before, tried, failed = best.spans, False, 0
             left, costs = [True] * before, self.costs(best)
             while failed < settings.failures and best.spans > least:
@@ -225,14 +227,13 @@ class Search:
     def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:
         """The curve once its vertices have moved, in ``rounds`` steps at most: up to ``reach`` on either side of vertex
         i, or all."""
-        settings, k = self.settings, vertices.points.shape[1] - 1 + self.closed
-        limits = (self.near, settings.margin, settings.residual)
-        steps = settings.few_rounds if k <= 3 else rounds
+        k = vertices.points.shape[1] - 1 + self.closed
+        steps = self.settings.few_rounds if k <= 3 else rounds
         steps = steps if self.alone else 4 * steps // 3  # masters get near later
-        error, points, tips, beziers, h, errors = move_vertices(
-            vertices[:], self.closed, self.outline, limits, steps, i, k if reach is None else reach
+        error, points, tips, *shape = move_vertices(
+            vertices[:], self.closed, self.outline, self.limits, steps, i, k if reach is None else reach
         )  # fmt: skip
-        return TriedCurve(error, Vertices(points, tips), beziers, h, errors)
+        return TriedCurve(k, error, Vertices(points, tips), *shape)
 
     def piece(self, piece: Pieces, curve: TriedCurve) -> Pieces:
         """The curve in the place of a piece."""

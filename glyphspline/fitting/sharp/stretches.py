@@ -86,12 +86,12 @@ def simplest(
 
     Returns:
         The arrays of :class:`.cutting.Chains`; those of :class:`.pieces.Pieces`; (P,) the ways: PART, WHOLE, or 0 where
-        there is one; (C + 1,) where the pieces of each contour begin; (C,) whether all of them are near enough, in one
-        way.
+        there is one; (C,) whether all pieces of a contour are near enough, in one way; the joints of those contours
+        that are not.
     """
     K, C, most = len(cubics), len(offsets) - 1, 2 * len(degrees)  # a segment may be cut in two, and be tried twice
     own, kinds, starts = np.empty((K, most, 4, 2)), np.empty(most, np.int64), np.zeros(C + 1, np.int64)
-    flipped, enough, firsts = np.zeros(C, np.bool_), np.ones(C, np.bool_), np.zeros(C + 1, np.int64)
+    flipped, enough = np.zeros(C, np.bool_), np.ones(C, np.bool_)
     P, ways, count = 2 * most, np.zeros(2 * most, np.int64), 0
     left: list[Joints] = []
     pieces = Pieces(
@@ -115,14 +115,14 @@ def simplest(
             enough[c] = enough[c] and pieces.errors[r] <= near and ways[r] == 0
         if not enough[c]:
             left.append(around)
-        firsts[c + 1] = count = last
+        count = last
     simple = (
         pieces.contour[:count], pieces.joints[:count], pieces.spans[:count], pieces.closed[:count],
         pieces.starts[: count + 1], pieces.vertices[: 2 * count], pieces.places[: 2 * count], pieces.tangents[:count],
         pieces.errors[:count],
     )  # fmt: skip
     total = starts[C]
-    return own[:, :total].copy(), kinds[:total], starts, flipped, simple, ways[:count], firsts, enough, left
+    return own[:, :total].copy(), kinds[:total], starts, flipped, simple, ways[:count], enough, left
 
 
 @compiled

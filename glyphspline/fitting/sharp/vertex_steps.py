@@ -13,13 +13,13 @@ from ...curves.cubics import length
 from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray, IntArray
 from .cubics import limited
-from .feet import copy_rows, empty_rows, measure, span_errors
+from .feet import Rows, empty_rows, measure, span_errors
 from .spline_curve import (
     LONGEST_HANDLE,
     SHORTEST_HANDLE,
     Curve,
     begun,
-    copy_curve,
+    copy_points,
     empty_curve,
     has_intervals,
     hold_tied,
@@ -36,6 +36,9 @@ FAILURES = 4
 STRIDES = (2.6, 2.0, 1.3)
 """By how much the first step, the second and each later one lower the largest distance, at most: a fit that needs more
 is given up. That ends 13 of some 580 fits that would pass, and saves a fifth of all steps."""
+
+ENOUGH = 0.02
+"""Distance of the vertices from the curve, in tolerances, that is enough for the next step."""
 
 OFF, SPANS_OFF = 1.3, 3
 """A fit is also given up if so many spans are off by this many tolerances after the first two steps: later ones shift
@@ -60,36 +63,31 @@ def move_vertices(
         the knot intervals as :class:`.spline_curve.Curve` has them, and (k,) the largest distance in each span.
     """
     (samples, directions, free), (near, margin, residual) = outline, limits
-    masters, n = samples.shape[0], samples.shape[1]
-    first = begun(vertices[0], vertices[1], closed)
-    k = first.size[0]
+    masters, n, k = samples.shape[0], samples.shape[1], vertices[0].shape[1] - 1 + closed
     owned = (
-        first, empty_curve(masters, k, closed), empty_rows(masters, n), empty_rows(masters, n),
-        system_of(masters, k, closed, i, reach),
+        begun(vertices[0], vertices[1], closed), empty_curve(masters, k, closed), empty_rows(masters, n),
+        empty_rows(masters, n), system_of(masters, k, closed, i, reach),
     )  # fmt: skip
     curve, trial, rows, tried, system = borrowed(owned)
     hold_tied(curve, directions, free)
-    afresh, error, passed, wobble, damping = (False, rows.span, rows.x), np.inf, False, 0.0, 1e-2
-    cold, hope = interpolate_cold(curve, margin, residual), near if masters == 1 else np.inf
+    error, passed, wobble, damping, enough = np.inf, False, 0.0, 1e-2, ENOUGH * near
+    cold, hope = interpolate_cold(curve, margin, max(enough, residual)), near if masters == 1 else np.inf
     for m in range(rounds):
         hope *= STRIDES[min(m, 2)]
     if cold < np.inf:
-        error = measure(samples, curve.b, curve.h, curve.size, near, afresh, rows)
+        error = measure(samples, curve.b, curve.h, curve.size, near, (False, rows.span, rows.x), rows)
         wobble = _wobble_weight(curve.h, k)
     else:
         rounds = -1
     for m in range(rounds + 1):
-        if error <= near and m > 0:
-            copy_curve(curve, trial)
+        if error <= near:
+            copy_points(curve, trial)
             cold = interpolate_cold(trial, margin, residual)
             if cold < residual:
-                copy_curve(trial, curve)
-                error = measure(samples, curve.b, curve.h, curve.size, near, afresh, rows)
+                curve, trial = trial, curve
+                error = measure(samples, curve.b, curve.h, curve.size, near, (True, rows.span, rows.x), rows)
         passed = error <= near and cold < residual and has_intervals(curve)
-        off = 0
-        for own in span_errors(rows, k):
-            off += 1 if own > OFF * near else 0
-        if passed or m == rounds or error > hope or (m > 1 and off >= SPANS_OFF and masters == 1):
+        if passed or m == rounds or error > hope or (m > 1 and masters == 1 and _spans_off(rows, k, near) >= SPANS_OFF):
             break
         hope /= STRIDES[min(m, 2)]
         minimax, failures, new = m >= 2, 0, np.inf
@@ -101,7 +99,7 @@ def move_vertices(
             share = 0.5 if minimax else 1.0
             if _advance(curve, trial, system.frames, system.moves, system.step, system.place, share):
                 hold_tied(trial, directions, free)
-                iterate(trial, 0.02 * near, 12)  # enough for the next step
+                iterate(trial, enough, 12)
                 new = measure(samples, trial.b, trial.h, trial.size, near, (True, rows.span, rows.x), tried)
                 if objective(trial, tried, error, minimax, wobble) < old:
                     break
@@ -110,15 +108,22 @@ def move_vertices(
         if failures == FAILURES:
             break
         damping /= 4
-        copy_curve(trial, curve)
-        copy_rows(tried, rows)
-        error = new
+        curve, trial, rows, tried, error = trial, curve, tried, rows, new
     if not passed:
         error = max(error, np.nextafter(near, np.inf))
-    p, tips, beziers = result_of(curve)
+    p, tips, beziers, h = result_of(curve)
     errors = span_errors(rows, k)
     keep_alive(owned)
-    return error, p, tips, beziers, first.h, errors
+    return error, p, tips, beziers, h, errors
+
+
+@compiled
+def _spans_off(rows: Rows, k: int, near: float) -> int:
+    """How many spans are off by more than ``OFF`` tolerances."""
+    off = 0
+    for own in span_errors(rows, k):
+        off += 1 if own > OFF * near else 0
+    return off
 
 
 @compiled
@@ -139,7 +144,7 @@ def _advance(
 
     A vertex moves across the curve as the curve does at its footpoint.
     """
-    copy_curve(curve, trial)
+    copy_points(curve, trial)
     for v in range(len(step)):
         _move_points(curve, trial.X[v], trial.p[v], v, (frames[v], moves[v], step[v], place), share)
     if not set_knots(trial):
