@@ -18,7 +18,6 @@ import numba
 from numba import njit, types
 from numba.core import caching
 from numba.core.ccallback import CFunc
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler, CompileResult
 from numba.core.registry import cpu_target
 from numba.core.runtime import nrt
@@ -83,7 +82,7 @@ def dispatcher(function: Callable[..., Any], role: str, **options: bool) -> Any:
 class _Inner(Compiler):  # type: ignore[misc, unused-ignore]
     """How functions for compiled callers are compiled."""
 
-    linked_as: type[JITCodeLibrary] = Linked
+    linked_as: type[Linked | Whole] = Linked
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
         super().__init__(typing, target, self.linked_as(target.codegen()), *rest)

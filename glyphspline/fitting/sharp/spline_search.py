@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import inf
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -47,27 +47,31 @@ MOST = 1000
 """Spans of one spline at most: what needs more stays as the source has it."""
 
 
-class Vertices(NamedTuple):
-    """The vertices (K, n, 2) of a curve, and the tips (K, 2, 2) of an arc's end handles."""
-
-    points: FloatArray
-    tips: FloatArray
+Vertices: TypeAlias = tuple[FloatArray, FloatArray]
+"""The vertices (K, n, 2) of a curve, and the tips (K, 2, 2) of an arc's end handles."""
 
 
 class TriedCurve(NamedTuple):
     """A curve of k spans in K masters; see :func:`.vertex_steps.move_vertices`.
 
     Attributes:
-        spans: k. error: the largest distance of a sample. vertices: its vertices, and tips of handles.
+        spans: k. error: the largest distance of a sample.
+        points: (K, n, 2) its vertices. tips: (K, 2, 2) of an arc's end handles.
         beziers: (K, k, 4, 2). h: the knot intervals. errors: (k,) the largest distance in each span.
     """
 
     spans: int
     error: float
-    vertices: Vertices
+    points: FloatArray
+    tips: FloatArray
     beziers: FloatArray
     h: FloatArray
     errors: FloatArray
+
+    @property
+    def vertices(self) -> Vertices:
+        """What another curve begins with."""
+        return self.points, self.tips
 
 
 def fit_spline(
@@ -102,7 +106,7 @@ def fit_spline(
     first = None
     if begun:
         points = np.ascontiguousarray(piece.vertices.swapaxes(0, 1))
-        first = Vertices(points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents[0]))
+        first = points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents[0])
     starts = STARTS if given or not alone else 1  # a stretch that none follows is cut in two, and its parts begin anew
     best = first_good(search.curves(first, guess, wanted, starts), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
@@ -189,7 +193,7 @@ class Search:
                     break
                 tried = True
                 i = min(choice, key=costs.__getitem__)
-                fewer = Vertices(*without(best.vertices[:], i, self.closed))
+                fewer = without(best.vertices, i, self.closed)
                 curve = self.moved(fewer, settings.removal_rounds, i, settings.reach)
                 if curve.error <= self.near:
                     best, costs, failed = curve, self.costs(curve), 0
@@ -211,13 +215,15 @@ class Search:
     def placed(self, k: int) -> Vertices:
         """Vertices of k spans on the outline."""
         self.guessed.add(k)
-        return Vertices(*place_vertices(self.outline, self.samples.D, k, self.closed))
+        placed: Vertices = place_vertices(self.outline, self.samples.D, k, self.closed)
+        return placed
 
     def with_more(self, curve: TriedCurve, growth: float) -> Vertices | None:
         """The vertices of a curve, and more in its worst spans; None if these are too many."""
         if curve.spans >= self.most:
             return None
-        return Vertices(*insert_vertices(curve.vertices[:], curve.beziers, curve.errors, self.near, growth, self.most))
+        more: Vertices = insert_vertices(curve.vertices, curve.beziers, curve.errors, self.near, growth, self.most)
+        return more
 
     def costs(self, curve: TriedCurve) -> list[float]:
         """What it is estimated to cost to take out each vertex of a curve."""
@@ -227,13 +233,11 @@ class Search:
     def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:
         """The curve once its vertices have moved, in ``rounds`` steps at most: up to ``reach`` on either side of vertex
         i, or all."""
-        k = vertices.points.shape[1] - 1 + self.closed
+        k = vertices[0].shape[1] - 1 + self.closed
         steps = self.settings.few_rounds if k <= 3 else rounds
         steps = steps if self.alone else 4 * steps // 3  # masters get near later
-        error, points, tips, *shape = move_vertices(
-            vertices[:], self.closed, self.outline, self.limits, steps, i, k if reach is None else reach
-        )  # fmt: skip
-        return TriedCurve(k, error, Vertices(points, tips), *shape)
+        reach = k if reach is None else reach
+        return TriedCurve(k, *move_vertices(vertices, self.closed, self.outline, self.limits, steps, i, reach))
 
     def piece(self, piece: Pieces, curve: TriedCurve) -> Pieces:
         """The curve in the place of a piece."""
@@ -243,5 +247,5 @@ class Search:
         )
         return piece._replace(
             spans=np.array([curve.spans]), starts=np.array([0, len(places)]), places=places, errors=np.array([error]),
-            vertices=curve.vertices.points.swapaxes(0, 1), tangents=tangents[None],
+            vertices=curve.points.swapaxes(0, 1), tangents=tangents[None],
         )  # fmt: skip
