@@ -35,18 +35,18 @@ HELD, FREE, TIED = 0, 1, 2
 
 
 class Curve(NamedTuple):
-    """A cubic spline of k spans and its vertices in K masters, in arrays for ``room`` - 1 spans.
+    """A cubic spline of k spans and its vertices in K masters.
 
     Attributes:
         size: (2,) k, and whether the curve is closed.
-        p: (K, room, 2) the vertices: k + 1 of an arc, k of a closed curve.
-        X: (K, room + 2, 2) the control points: slot i in row i + 1.
-        h: (room + 4,) the knot intervals: that of span s in entry s + 2.
-        W: (room - 1, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[v, s : s + 4]``.
-        b: (K, room - 1, 4, 2) the Bézier points.
-        t: (room,) footpoints of the vertices, as signed shares of the span before or after them.
-        bounds: (room, 2) the ends of their intervals (Lemma 2), likewise.
-        e: (K, room, 2) vertices less footpoints. d: (K, 2) derivatives at the last footpoint looked at.
+        p: (K, k + 1, 2) the vertices, of which a closed curve has k.
+        X: (K, k + 3, 2) the control points: slot i in row i + 1.
+        h: (k + 5,) the knot intervals: that of span s in entry s + 2.
+        W: (k, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[v, s : s + 4]``.
+        b: (K, k, 4, 2) the Bézier points.
+        t: (k + 1,) footpoints of the vertices, as signed shares of the span before or after them.
+        bounds: (k + 1, 2) the ends of their intervals (Lemma 2), likewise.
+        e: (K, k + 1, 2) vertices less footpoints. d: (K, 2) derivatives at the last footpoint looked at.
     """
 
     size: IntArray
@@ -62,21 +62,21 @@ class Curve(NamedTuple):
 
 
 @compiled
-def empty_curve(masters: int, most: int, closed: int) -> Curve:
-    """Arrays for a curve of up to ``most`` spans."""
-    size, room = np.zeros(2, dtype=np.int64), most + 1
-    size[1] = closed
+def empty_curve(masters: int, k: int, closed: int) -> Curve:
+    """Arrays for a curve of k spans."""
+    size = np.empty(2, dtype=np.int64)
+    size[0], size[1] = k, closed
     return Curve(
-        size, np.empty((masters, room, 2)), np.empty((masters, room + 2, 2)), np.zeros(room + 4),
-        np.empty((most, 4, 4)), np.empty((masters, most, 4, 2)), np.zeros(room), np.empty((room, 2)),
-        np.empty((masters, room, 2)), np.empty((masters, 2)),
+        size, np.empty((masters, k + 1, 2)), np.empty((masters, k + 3, 2)), np.zeros(k + 5), np.empty((k, 4, 4)),
+        np.empty((masters, k, 4, 2)), np.zeros(k + 1), np.empty((k + 1, 2)), np.empty((masters, k + 1, 2)),
+        np.empty((masters, 2)),
     )  # fmt: skip
 
 
 @compiled
 def copy_points(source: Curve, target: Curve) -> None:
-    """Copy the vertices, control points and footpoints of a curve into the arrays of another one of the same kind."""
-    k = target.size[0] = source.size[0]
+    """Copy the vertices, control points and footpoints of a curve into the arrays of another one of as many spans."""
+    k = source.size[0]
     for i in range(k + 1):
         target.t[i] = source.t[i]
         target.bounds[i, 0], target.bounds[i, 1] = source.bounds[i, 0], source.bounds[i, 1]
@@ -89,7 +89,7 @@ def copy_points(source: Curve, target: Curve) -> None:
 
 @compiled
 def chord(p: FloatArray, i: int, j: int) -> float:
-    """Distance of vertices i and j, (K, room, 2): the root mean square of those in the masters."""
+    """Distance of vertices i and j of p, (K, n, 2): the root mean square of those in the masters."""
     total = 0.0
     for v in range(len(p)):
         x, y = p[v, j, 0] - p[v, i, 0], p[v, j, 1] - p[v, i, 1]
@@ -103,7 +103,6 @@ def begun(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
     masters, n = p.shape[0], p.shape[1]
     k = n - 1 + closed
     curve = empty_curve(masters, k, closed)
-    curve.size[0] = k
     for v in range(masters):
         for axis in range(2):
             for i in range(n):

@@ -159,7 +159,7 @@ def _add_row(
         gram[8, u] += weight * e * J[u]
     for u in range(8):
         scaled = weight * J[u]
-        for v in range(8):  # both halves of the matrix: whole rows become SIMD
+        for v in range(8):  # both halves of the matrix, so that none is copied from the other
             gram[u, v] += scaled * J[v]
 
 
