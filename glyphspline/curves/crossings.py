@@ -14,8 +14,6 @@ the errors of chords that touch; :mod:`.contacts` decides whether strands that s
 
 from __future__ import annotations
 
-from itertools import pairwise
-
 import numpy as np
 
 from ..arrays import grown, put
@@ -74,58 +72,76 @@ def meetings(cubics: FloatArray, offsets: IntArray, glyphs: IntArray) -> tuple[F
         (K, 6): the two contours, and the places where contact begins and ends, by the first of them: (c, d, a, b, a',
         b'). Of a crossing the last two are NaN. And (G,) whether all of a glyph's were looked for.
     """
-    every = []
-    for first, last in pairwise(glyphs.tolist()):
-        pieces, boxes, flat = pieces_of(cubics, offsets, first, last)
-        order = np.argsort(boxes[:, 0], kind="stable")
-        every.append(glyph_meetings(cubics, offsets, pieces, boxes, order, flat))
-    complete = np.array([whole for _, whole in every], dtype=np.bool_)
-    return np.concatenate([np.empty((0, 6)), *(found for found, whole in every if whole)]), complete
+    pieces, boxes, flat, ends = pieces_of(cubics, offsets, glyphs)
+    order = np.lexsort((boxes[:, 0], np.repeat(np.arange(len(flat)), np.diff(ends))))
+    return all_meetings(cubics, offsets, pieces, boxes, order, flat, ends)
 
 
 @compiled
-def pieces_of(cubics: FloatArray, offsets: IntArray, first: int, last: int) -> tuple[IntArray, FloatArray, float]:
-    """The segments with a length of the contours from ``first`` up to ``last``.
+def pieces_of(
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray
+) -> tuple[IntArray, FloatArray, FloatArray, IntArray]:  # fmt: skip
+    """The segments that have a length.
 
     Returns:
         (n, 4): segment, contour, the piece after it, halvings until it is as good as its chord. (n, 4) boxes: left,
-        right, low, high. And by how much chords may differ from curves.
+        right, low, high. And of the G glyphs (G,) by how much chords may differ from curves, and (G + 1,) where the
+        pieces of each begin.
     """
-    n, most = 0, offsets[last] - offsets[first]
-    pieces, boxes = np.empty((most, 4), np.int64), np.empty((most, 4))
-    for c in range(first, last):
-        begin = n
-        for s in range(offsets[c], offsets[c + 1]):
-            if legs(cubics[s]) > 0.0:  # rounding may leave pieces of no length
-                pieces[n, 0], pieces[n, 1], pieces[n, 2], pieces[n, 3] = s, c, n + 1, 0
-                n += 1
-        if n > begin:
-            pieces[n - 1, 2] = begin
-    flat = FLAT * extent(cubics[offsets[first] : offsets[last]])
-    for i in range(n):
-        b = cubics[pieces[i, 0]]
-        for axis in range(2):
-            low = high = b[0, axis]
-            for k in range(1, 4):
-                low, high = min(low, b[k, axis]), max(high, b[k, axis])
-            boxes[i, 2 * axis], boxes[i, 2 * axis + 1] = low, high
-        error = chord_error(b)
-        while error > flat and pieces[i, 3] < DEEPEST:
-            pieces[i, 3] += 1
-            error /= 4
-    return pieces[:n], boxes[:n], flat
+    n, G = 0, len(glyphs) - 1
+    pieces, boxes = np.empty((len(cubics), 4), np.int64), np.empty((len(cubics), 4))
+    flat, ends = np.empty(G), np.zeros(G + 1, np.int64)
+    for g in range(G):
+        flat[g] = FLAT * extent(cubics[offsets[glyphs[g]] : offsets[glyphs[g + 1]]])
+        for c in range(glyphs[g], glyphs[g + 1]):
+            begin = n
+            for s in range(offsets[c], offsets[c + 1]):
+                if legs(cubics[s]) > 0.0:  # rounding may leave pieces of no length
+                    pieces[n, 0], pieces[n, 1], pieces[n, 2], pieces[n, 3] = s, c, n + 1, 0
+                    n += 1
+            if n > begin:
+                pieces[n - 1, 2] = begin
+        ends[g + 1] = n
+        for i in range(ends[g], n):
+            b = cubics[pieces[i, 0]]
+            for axis in range(2):
+                low = high = b[0, axis]
+                for k in range(1, 4):
+                    low, high = min(low, b[k, axis]), max(high, b[k, axis])
+                boxes[i, 2 * axis], boxes[i, 2 * axis + 1] = low, high
+            error = chord_error(b)
+            while error > flat[g] and pieces[i, 3] < DEEPEST:
+                pieces[i, 3] += 1
+                error /= 4
+    return pieces[:n], boxes[:n], flat, ends
+
+
+@compiled
+def all_meetings(
+    cubics: FloatArray, offsets: IntArray, pieces: IntArray, boxes: FloatArray, order: IntArray, flat: FloatArray,
+    ends: IntArray,
+) -> tuple[FloatArray, BoolArray]:  # fmt: skip
+    """The meetings of each glyph; see :func:`meetings`.
+
+    Args:
+        pieces, boxes, flat, ends: of :func:`pieces_of`. order: of each glyph's pieces, by their left.
+    """
+    every, complete, count = np.empty((16, 6)), np.empty(len(flat), np.bool_), 0
+    for g in range(len(flat)):
+        own = order[ends[g] : ends[g + 1]]
+        found, complete[g] = glyph_meetings(cubics, offsets, pieces, boxes, own, flat[g])
+        every = grown(every, count + len(found))
+        put(found, every[count : count + len(found)])
+        count += len(found)
+    return every[:count], complete
 
 
 @compiled
 def glyph_meetings(
     cubics: FloatArray, offsets: IntArray, pieces: IntArray, boxes: FloatArray, order: IntArray, flat: float
 ) -> tuple[FloatArray, bool]:  # fmt: skip
-    """The meetings of a glyph; see :func:`meetings`.
-
-    Args:
-        pieces, boxes, flat: of :func:`pieces_of`. order: of the pieces, by their left.
-    """
-    found, count, n, finest = np.empty((16, 6)), 0, len(pieces), flat * 0.25**FINER
+    """The meetings of a glyph, none if there are too many; see :func:`all_meetings`."""
+    found, count, n, finest = np.empty((16, 6)), 0, len(order), flat * 0.25**FINER
     A, B = np.empty((STACK, 4, 2)), np.empty((STACK, 4, 2))
     marks, begins = np.empty((STACK, 3), np.int64), np.empty((STACK, 2))
     steps, coarse, floor = 0, -1, 0  # the row of a pair that touches and is halved on, and its place on the stack

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiled import compiled
-from ..types import FloatArray
+from ..types import FloatArray, IntArray
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 """For integrals over a Bézier piece; converged but at near-cusps."""
@@ -64,3 +64,12 @@ def area(cubics: FloatArray) -> float:
             bx, by = cubics[s, j, 0] - cubics[0, 0, 0], cubics[s, j, 1] - cubics[0, 0, 1]
             total += weight * (ax * by - ay * bx)
     return total / 20
+
+
+@compiled
+def areas(cubics: FloatArray, offsets: IntArray) -> FloatArray:
+    """(C,) the areas of chains of cubics (m, 4, 2), each from its offset (C + 1,) on."""
+    found = np.empty(len(offsets) - 1)
+    for c in range(len(found)):
+        found[c] = area(cubics[offsets[c] : offsets[c + 1]])
+    return found

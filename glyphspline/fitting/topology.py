@@ -14,6 +14,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ..curves.crossings import crossings
+from ..curves.integrals import areas
 from ..outlines.contour_arrays import ContourArrays
 from ..outlines.segments import all_cubics
 from ..types import BoolArray, FloatArray, IntArray
@@ -37,35 +38,32 @@ def changes(source: ContourArrays, written: ContourArrays, glyphs: IntArray) -> 
     Args:
         source, written: C contours each. glyphs: (G + 1,) where the contours of each glyph begin.
     """
-    pairs, counted = _crossing_pairs(written, glyphs)
+    cubics = all_cubics(written)
+    pairs, counted = _crossing_pairs(cubics, written.offsets, glyphs)
     new = np.where(np.repeat(counted, np.diff(glyphs)), 0, -1)
     crossing = np.unique(np.searchsorted(glyphs, [c for c, _ in pairs], side="right") - 1)
     for g in crossing[counted[crossing]].tolist():
         a, b = glyphs[g : g + 2].tolist()
-        known, _ = _crossing_pairs(source.part(a, b), np.array([0, b - a]))
+        known = _crossings_of(source.part(a, b))
         for (c, d), number in pairs.items():
             if a <= c < b:
                 new[list({c, d})] += max(number - known[c - a, d - a], 0)
-    before, now = _areas(source), _areas(written)
+    before, now = areas(all_cubics(source), source.offsets), areas(cubics, written.offsets)
     # A contour whose area is less than this share of its source's, or of the other sign, has collapsed.
     collapsed = now * np.sign(before) < 0.25 * np.abs(before)
     for c in np.flatnonzero(collapsed).tolist():
-        collapsed[c] = not _crossing_pairs(source.part(c, c + 1), np.array([0, 1]))[0]
+        collapsed[c] = not _crossings_of(source.part(c, c + 1))
     return np.stack([new, collapsed])
 
 
-def _areas(contours: ContourArrays) -> FloatArray:
-    """(C,) signed areas, positive of contours that run counter-clockwise: all at once, as calls take longer."""
-    cubics, first = all_cubics(contours), contours.offsets[:-1]
-    x, y = np.moveaxis(cubics - np.repeat(cubics[first, :1], np.diff(contours.offsets), axis=0), 2, 0)
-    total = np.zeros(len(cubics))
-    for i, j, weight in ((0, 1, 6), (0, 2, 3), (0, 3, 1), (1, 2, 3), (1, 3, 3), (2, 3, 6)):
-        total += weight * (x[:, i] * y[:, j] - y[:, i] * x[:, j])
-    areas: FloatArray = np.add.reduceat(total, first) / 20
-    return areas
+def _crossings_of(glyph: ContourArrays) -> Counter[tuple[int, int]]:
+    """Number of crossings in a glyph by the numbers of the two contours."""
+    return _crossing_pairs(all_cubics(glyph), glyph.offsets, np.array([0, glyph.num_contours]))[0]
 
 
-def _crossing_pairs(contours: ContourArrays, glyphs: IntArray) -> tuple[Counter[tuple[int, int]], BoolArray]:
+def _crossing_pairs(
+    cubics: FloatArray, offsets: IntArray, glyphs: IntArray
+) -> tuple[Counter[tuple[int, int]], BoolArray]:  # fmt: skip
     """Number of crossings by the numbers of the two contours; and (G,) whether a glyph's were counted."""
-    found, counted = crossings(all_cubics(contours), contours.offsets, glyphs)
+    found, counted = crossings(cubics, offsets, glyphs)
     return Counter(map(tuple, found[:, :2].astype(np.int64).tolist())), counted

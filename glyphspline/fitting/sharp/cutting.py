@@ -8,8 +8,7 @@ fitted, and then one spline is sought that stores less. A stretch that no spline
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ import numpy as np
 from ...outlines.contour_arrays import ContourArrays
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
-from .pieces import Pieces, joined, part, source_pieces, turned
+from .pieces import Piece, Pieces, end_to_end, in_order, joined, piece_of, turned
 from .settings import SharpSettings
 from .spline_search import MOST, fit_spline
 from .stretches import PART, WHOLE, simplest
@@ -30,31 +29,41 @@ class Chains(NamedTuple):
 
     Attributes:
         cubics: (K, M, 4, 2) in each master and degrees: (M,) of all; offsets: (C + 1,) where each begins.
-        flipped: (C,) whether it is fitted the other way round.
+        flipped: (C,) whether it is fitted the other way round. known: joints of some contours, by their numbers.
     """
 
     cubics: FloatArray
     degrees: IntArray
     offsets: IntArray
     flipped: BoolArray
+    known: dict[int, Joints]
 
-    def of(self, piece: Pieces) -> slice:
-        """Where the segments of a piece's contour are."""
-        c = int(piece.contour[0])
-        return slice(int(self.offsets[c]), int(self.offsets[c + 1]))
+    def of(self, piece: Piece) -> tuple[FloatArray, IntArray]:
+        """The cubics of a piece's contour and their degrees, in the direction in which it is fitted."""
+        own, way = slice(*self.offsets[piece.contour : piece.contour + 2]), -1 if self.flipped[piece.contour] else 1
+        return self.cubics[:, own][:, ::way, ::way], self.degrees[own][::way]
 
-    def joints(self, piece: Pieces, settings: SharpSettings) -> Joints:
-        """Samples and joints of a piece's contour, in the direction in which it is fitted."""
-        own, way = self.of(piece), -1 if self.flipped[piece.contour[0]] else 1
-        cubics, degrees = self.cubics[:, own][:, ::way, ::way], self.degrees[own][::way]
+    def joints(self, piece: Piece, settings: SharpSettings) -> Joints:
+        """Samples and joints of a piece's contour."""
+        if piece.contour in self.known:
+            return self.known[piece.contour]
+        cubics, degrees = self.of(piece)
         how = settings.near, settings.angle, settings.line, settings.c2
         return find_joints(np.ascontiguousarray(cubics), np.ascontiguousarray(degrees), *how)
 
-    def source(self, piece: Pieces) -> Pieces:
-        """The source's own segments in the place of a piece."""
-        own, (i, j) = self.of(piece), piece.joints[0].tolist()
-        cubics, degrees = self.cubics[:, own][:, i:j], self.degrees[own][i:j]
-        return source_pieces(int(piece.contour[0]), i, cubics, degrees)
+    def source(self, piece: Piece) -> Iterator[Piece]:
+        """The source's own segments in the place of a piece, as lines and arcs of one span."""
+        (i, j), (cubics, degrees) = piece.joints, self.of(piece)
+        squares = np.zeros(j - i)
+        for own in cubics[:, i:j]:
+            chords = np.hypot(own[:, 3, 0] - own[:, 0, 0], own[:, 3, 1] - own[:, 0, 1])
+            squares += chords * chords
+        factors = 3 / np.sqrt(np.where(squares > 0.0, squares / len(cubics), 1.0))  # see chords
+        for n, (degree, factor) in enumerate(zip(degrees[i:j].tolist(), factors, strict=True), i):
+            own, ends = cubics[:, n], (n, n + 1)
+            tangents = (own[:, 1::2] - own[:, ::2]) * factor
+            vertices, places = own[:, ::3].swapaxes(0, 1), np.array(ends, dtype=np.float64)
+            yield Piece(piece.contour, ends, min(degree - 1, 1), 0, vertices, places, tangents, 0.0)
 
 
 def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: SharpSettings) -> tuple[Chains, Pieces]:
@@ -66,95 +75,77 @@ def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: SharpSet
         cubics: (K, m, 4, 2) the contours' segments in each master. contours: their degrees and offsets.
     """
     near = settings.near
-    *arrays, simple, ways, enough, left = simplest(
+    chain, degrees, offsets, flipped, simple, ways, enough, left = simplest(
         cubics, contours.degrees, contours.offsets, near, settings.angle, settings.line, settings.c2,
         settings.cubic_rounds,
     )  # fmt: skip
-    chains, pieces = Chains(*arrays), Pieces(*simple)
-    splines = Splines(dict(zip(np.flatnonzero(~enough).tolist(), left, strict=True)), ways.tolist(), settings)
-    pieces, _ = _replaced(pieces, ~(pieces.errors <= near) | (ways > 0), splines)
-    pieces = turned(pieces, chains.offsets, chains.flipped)
-    pieces, _ = _replaced(pieces, ~(pieces.errors <= near), lambda q, piece: [chains.source(piece)])
+    known = dict(zip(np.flatnonzero(~enough).tolist(), left, strict=True))
+    chains, pieces = Chains(chain, degrees, offsets, flipped, known), Pieces(*simple)
+    poor = ~(pieces.errors <= near) | (ways > 0)
+    tried = [(piece_of(pieces, q), int(ways[q])) for q in np.flatnonzero(poor).tolist()]
+    followed = splines(tried, known, settings)
+    found = [own for piece in followed for own in ([piece] if piece.error <= near else chains.source(piece))]
+    pieces, _ = _replaced(chains, turned(pieces, chains.offsets, chains.flipped), poor, found)
     return chains, pieces
 
 
-def _replaced(
-    pieces: Pieces, which: BoolArray, others: Callable[[int, Pieces], list[Pieces]]
-) -> tuple[Pieces, IntArray]:  # fmt: skip
-    """Pieces with others in the place of some, and which of the given ones each is; -1 for others."""
-    found, kept, counts = list[Pieces](), 0, np.ones(len(which), dtype=np.int64)
-    for q in np.flatnonzero(which).tolist():
-        if kept < q:
-            found.append(part(pieces, kept, q))
-        own = others(q, part(pieces, q, q + 1))
-        counts[q] = sum(len(one.spans) for one in own)
-        found += own
-        kept = q + 1
-    same = np.where(which, -1, np.arange(len(which))).repeat(counts)
-    if not kept:
-        return pieces, same
-    return joined([*found, part(pieces, kept, len(which))], pieces.vertices.shape[1]), same
+def _replaced(chains: Chains, pieces: Pieces, poor: BoolArray, found: list[Piece]) -> tuple[Pieces, IntArray]:
+    """Pieces with others, in the direction in which these are fitted, in the place of poor ones; see :func:`refit`."""
+    if found:
+        pieces = joined(pieces, turned(end_to_end(found), chains.offsets, chains.flipped))
+    pieces, order = in_order(pieces, np.append(np.flatnonzero(~poor), np.arange(len(poor), len(pieces.spans))))
+    return pieces, np.where(order < len(poor), order, -1)
 
 
-@dataclass
-class Splines:
-    """What takes the place of stretches that their line or cubic does not follow, one after the other.
+def splines(tried: list[tuple[Piece, int]], joints: dict[int, Joints], settings: SharpSettings) -> Iterator[Piece]:
+    """What takes the place of stretches that their line or cubic does not follow, as far as a spline does.
 
-    Attributes:
-        joints: of their contours, in the direction in which these are fitted.
-        ways: of all stretches, from :func:`.stretches.simplest`.
-        parts: of a stretch that has corners that do not show, so far.
+    Args:
+        tried: with their ways, from :func:`.stretches.simplest`. The parts of a stretch that has corners that do not
+            show come before it.
+        joints: of their contours.
     """
-
-    joints: dict[int, Joints]
-    ways: list[int]
-    settings: SharpSettings
-    parts: list[Pieces] = field(default_factory=list)
-
-    def __call__(self, q: int, piece: Pieces) -> list[Pieces]:
-        """What takes the place of stretch q; nothing for a part, as the whole stretch is next."""
-        joints, way, near = self.joints[int(piece.contour[0])], self.ways[q], self.settings.near
-        most = most_spans(self.parts, near) if way == WHOLE else MOST
-        if not piece.errors[0] <= near:
-            piece = fit_spline(joints, piece, near, self.settings, False, most)
+    parts, near = list[Piece](), settings.near
+    for piece, way in tried:
+        around, most = joints[piece.contour], most_spans(parts, near) if way == WHOLE else MOST
+        found = piece if piece.error <= near else fit_spline(around, piece, near, settings, False, most)
         if way == PART:
-            self.parts.append(piece)
-            return []
-        parts, self.parts = self.parts, []
-        if piece.errors[0] <= near:
-            return [piece]
-        return parts if most < MOST else in_two(joints, piece, near, self.settings)
+            parts.append(found)
+            continue
+        if found.error <= near:
+            yield found
+        elif most < MOST:
+            yield from parts
+        else:
+            yield from in_two(around, piece, near, settings)
+        parts = []
 
 
-def in_two(joints: Joints, piece: Pieces, near: float, settings: SharpSettings) -> list[Pieces]:
+def in_two(joints: Joints, piece: Piece, near: float, settings: SharpSettings) -> Iterator[Piece]:
     """A stretch that no spline follows, cut at the joint in the middle of its samples, and again where that is needed.
 
     A single segment is left as it is, and so is a stretch of masters: at the cut their arcs would not meet smoothly.
     """
-    (i, j), first = piece.joints[0].tolist(), joints.first
+    (i, j), first = piece.joints, joints.first
     if j - i < 2 or len(joints.samples) > 1:
-        return [piece]
+        yield piece
+        return
     middle = i + 1 + int(np.abs(2 * first[i + 1 : j] - first[i] - first[j]).argmin())
-    found: list[Pieces] = []
-    for ends in (np.array([i, middle]), np.array([middle, j])):
-        own = piece._replace(
-            joints=ends[None], spans=np.ones(1, np.int64), closed=np.zeros(1, np.int64), starts=np.array([0, 2]),
-            vertices=joints.samples[:, first[ends]].swapaxes(0, 1), places=ends.astype(np.float64),
-            errors=np.array([np.inf]),
-        )  # fmt: skip
-        own = fit_spline(joints, own, near, settings, given=True)
-        found += [own] if own.errors[0] <= near else in_two(joints, own, near, settings)
-    return found
+    for ends in ((i, middle), (middle, j)):
+        vertices, places = joints.samples[:, first[list(ends)]].swapaxes(0, 1), np.array(ends, dtype=np.float64)
+        own = Piece(piece.contour, ends, 1, 0, vertices, places, piece.tangents, np.inf)
+        found = fit_spline(joints, own, near, settings, given=True)
+        yield from [found] if found.error <= near else in_two(joints, own, near, settings)
 
 
-def most_spans(parts: list[Pieces], near: float) -> int:
+def most_spans(parts: list[Piece], near: float) -> int:
     """The most spans with which a spline stores less than the parts of a stretch; many if one is not near enough.
 
     Parts that store as little are kept: a corner that is rounded is a peak of curvature.
     """
-    if any(not own.errors[0] <= near for own in parts):
+    if any(not own.error <= near for own in parts):
         return MOST
-    numbers = sum(2 * int(own.spans[0]) + (4 if own.spans[0] > 0 else 2) for own in parts)
+    numbers = sum(2 * own.spans + (4 if own.spans > 0 else 2) for own in parts)
     return (numbers - 5) // 2
 
 
@@ -169,18 +160,21 @@ def refit(
     Returns:
         The pieces, and which of the given ones each is; -1 for others.
     """
-    return _replaced(pieces, poor, lambda q, piece: [_closer(chains, piece, shares, settings)])
+    begin = turned(pieces, chains.offsets, chains.flipped)
+    fits = (_closer(chains, piece_of(begin, q), shares, settings) for q in np.flatnonzero(poor).tolist())
+    return _replaced(chains, pieces, poor, [piece for own in fits for piece in own])
 
 
-def _closer(chains: Chains, piece: Pieces, shares: FloatArray, settings: SharpSettings) -> Pieces:
+def _closer(chains: Chains, piece: Piece, shares: FloatArray, settings: SharpSettings) -> Iterator[Piece]:
     """A piece fitted within the first of the shares that a spline is found for, or else the source's own segments."""
-    begin, joints = turned(piece, chains.offsets, chains.flipped), chains.joints(piece, settings)
+    joints = chains.joints(piece, settings)
     # What begins from its own vertices has to come nearer than it is, or it stays as it is. Those of masters may be
     # where slip rules them out: a new guess is better.
-    given = len(chains.cubics) == 1 and bool(piece.spans[0] > 0)
-    most = min(settings.near, float(piece.errors[0])) if given else settings.near
+    given = len(chains.cubics) == 1 and piece.spans > 0
+    most = min(settings.near, piece.error) if given else settings.near
     for near in (shares * most).tolist():
-        found = fit_spline(joints, begin, near, settings, given)
-        if found.errors[0] <= near:
-            return turned(found, chains.offsets, chains.flipped)
-    return chains.source(piece)
+        found = fit_spline(joints, piece, near, settings, given)
+        if found.error <= near:
+            yield found
+            return
+    yield from chains.source(piece)

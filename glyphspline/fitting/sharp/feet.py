@@ -71,7 +71,7 @@ def empty_rows(masters: int, samples: int) -> Rows:
 
 @compiled
 def measure(
-    samples: FloatArray, beziers: FloatArray, h: FloatArray, size: IntArray, near: float,
+    samples: FloatArray, beziers: FloatArray, h: FloatArray, closed: int, near: float,
     known: tuple[bool, IntArray, FloatArray], rows: Rows,
 ) -> float:  # fmt: skip
     """Pair the outline with a curve, in order and in every master by itself; the largest distance.
@@ -79,11 +79,11 @@ def measure(
     Each foot is the nearest point after the foot before it, by Newton's method across the spans.
 
     Args:
-        samples: (K, n, 2), see :class:`Samples`. beziers, h, size: see :class:`.spline_curve.Curve`.
+        samples: (K, n, 2), see :class:`Samples`. beziers, h, closed: see :class:`.spline_curve.Curve`.
         near: the tolerance. known: whether there are first guesses, and spans and parameters of these, (K, n).
         rows: receives the feet and distances.
     """
-    k, closed, n, worst = size[0], size[1], samples.shape[1], 0.0
+    k, n, worst = beziers.shape[1], samples.shape[1], 0.0
     for v in range(len(samples)):
         Q, b = samples[v], beziers[v]
         span, x, e, nx, ny = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v]
@@ -283,7 +283,7 @@ def places_beside(
         samples, beziers, h, near: see :func:`measure`. known, lap: the places of samples, see :class:`Samples`.
     """
     rows, k, n = empty_rows(len(samples), samples.shape[1]), beziers.shape[1], samples.shape[1]
-    worst = measure(samples, beziers, h, np.array([k, closed]), near, (False, rows.span, rows.x), rows)
+    worst = measure(samples, beziers, h, closed, near, (False, rows.span, rows.x), rows)
     places, feet, own = np.empty(k + 1 - closed), np.empty(n + 1), np.empty(n + 1)
     for j in range(n):
         feet[j], own[j] = rows.span[0, j] + rows.x[0, j], known[j]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
-from ...compiled import compiled
-from ...outlines.contour_arrays import offsets_of
+from ...outlines.contour_arrays import members_of, offsets_of
 from ...types import BoolArray, FloatArray, IntArray
 
 
@@ -37,92 +36,71 @@ class Pieces(NamedTuple):
     errors: FloatArray
 
 
-PieceArrays: TypeAlias = tuple[
-    IntArray, IntArray, IntArray, IntArray, IntArray, FloatArray, FloatArray, FloatArray, FloatArray
-]
-"""The arrays of pieces, for calls of compiled functions: see :data:`.corners.JointArrays`."""
+class Piece(NamedTuple):
+    """One of them: ``joints`` are two numbers, ``vertices`` (n, K, 2), ``places`` (n,) and ``tangents`` (K, 2, 2)."""
+
+    contour: int
+    joints: tuple[int, int]
+    spans: int
+    closed: int
+    vertices: FloatArray
+    places: FloatArray
+    tangents: FloatArray
+    error: float
 
 
-def part(pieces: Pieces, first: int, end: int) -> Pieces:
-    """Pieces ``first`` to ``end``, in the same memory."""
-    own, a, b = slice(first, end), int(pieces.starts[first]), int(pieces.starts[end])
-    return Pieces(
-        pieces.contour[own], pieces.joints[own], pieces.spans[own], pieces.closed[own],
-        pieces.starts[first : end + 1] - a, pieces.vertices[a:b], pieces.places[a:b], pieces.tangents[own],
-        pieces.errors[own],
+def piece_of(pieces: Pieces, q: int) -> Piece:
+    """Piece q, in the same memory."""
+    (i, j), own = pieces.joints[q].tolist(), slice(int(pieces.starts[q]), int(pieces.starts[q + 1]))
+    return Piece(
+        int(pieces.contour[q]), (i, j), int(pieces.spans[q]), int(pieces.closed[q]), pieces.vertices[own],
+        pieces.places[own], pieces.tangents[q], float(pieces.errors[q]),
     )  # fmt: skip
 
 
-def joined(parts: Sequence[Pieces], masters: int) -> Pieces:
-    """All pieces of several, in K masters."""
-    none = source_pieces(0, 0, np.empty((masters, 0, 4, 2)), np.empty(0, dtype=np.int64))
-    contour, joints, spans, closed, starts, *others = zip(none, *parts, strict=True)
-    lengths = np.concatenate([own[1:] - own[:-1] for own in starts])
-    before, after = (map(np.concatenate, columns) for columns in ((contour, joints, spans, closed), others))
-    return Pieces._make([*before, offsets_of(lengths), *after])
-
-
-def source_pieces(c: int, i: int, cubics: FloatArray, degrees: IntArray) -> Pieces:
-    """Segments (K, n, 4, 2) of contour c from its joint i on as they are, as lines and arcs of one span."""
-    masters, n = cubics.shape[:2]
-    squares = np.zeros(n)
-    for own in cubics:
-        chords = np.hypot(own[:, 3, 0] - own[:, 0, 0], own[:, 3, 1] - own[:, 0, 1])
-        squares += chords * chords
-    factors = 3 / np.sqrt(np.where(squares > 0.0, squares / masters, 1.0))  # see chords
-    ends = i + np.arange(n)[:, None] + np.arange(2)
+def end_to_end(pieces: Sequence[Piece]) -> Pieces:
+    """Pieces, one or more, as arrays."""
+    contour, joints, spans, closed, vertices, places, tangents, errors = zip(*pieces, strict=True)
     return Pieces(
-        np.full(n, c), ends, np.minimum(degrees - 1, 1), np.zeros(n, dtype=np.int64), 2 * np.arange(n + 1),
-        cubics[:, :, ::3].transpose(1, 2, 0, 3).reshape(2 * n, masters, 2), ends.reshape(-1).astype(np.float64),
-        (cubics[:, :, 1::2] - cubics[:, :, ::2]).transpose(1, 0, 2, 3) * factors[:, None, None, None], np.zeros(n),
+        np.array(contour), np.array(joints), np.array(spans), np.array(closed), offsets_of([*map(len, places)]),
+        np.concatenate(vertices), np.concatenate(places), np.array(tangents), np.array(errors),
     )  # fmt: skip
+
+
+def joined(pieces: Pieces, others: Pieces) -> Pieces:
+    """Two groups of pieces as one."""
+    columns = [np.concatenate(each) for each in zip(pieces, others, strict=True)]
+    columns[4] = np.append(pieces.starts, others.starts[1:] + pieces.starts[-1])
+    return Pieces._make(columns)
+
+
+def in_order(pieces: Pieces, which: IntArray) -> tuple[Pieces, IntArray]:
+    """The chosen pieces contour after contour, each from its first joint on; and which of the given ones each is."""
+    order = which[np.lexsort((pieces.joints[which, 0], pieces.contour[which]))]
+    own, starts = members_of(pieces.starts, order)
+    return Pieces(
+        pieces.contour[order], pieces.joints[order], pieces.spans[order], pieces.closed[order], starts,
+        pieces.vertices[own], pieces.places[own], pieces.tangents[order], pieces.errors[order],
+    ), order  # fmt: skip
 
 
 def turned(pieces: Pieces, offsets: IntArray, flipped: BoolArray) -> Pieces:
-    """The same pieces with those of flipped contours the other way round, from the last one's end on.
+    """The same pieces, those of flipped contours the other way round.
 
     Args:
         offsets: (C + 1,) where the segments of each contour begin. flipped: (C,).
     """
-    return Pieces(*turned_arrays(pieces[:], offsets, flipped))
-
-
-@compiled
-def turned_arrays(pieces: PieceArrays, offsets: IntArray, flipped: BoolArray) -> PieceArrays:
-    """The arrays of pieces, turned: see :func:`turned`."""
-    old = Pieces(*pieces)
-    P, masters = len(old.spans), old.vertices.shape[1]
-    order, first = np.arange(P), 0
-    for q in range(P):
-        c = old.contour[q]
-        if q > 0 and old.contour[q - 1] != c:
-            first = q
-        if flipped[c] and (q + 1 == P or old.contour[q + 1] != c):
-            for r in range(first, q + 1):
-                order[r] = first + q - r
-    joints, tangents, starts = np.empty_like(old.joints), np.empty_like(old.tangents), np.zeros_like(old.starts)
-    vertices, places = np.empty_like(old.vertices), np.empty_like(old.places)
-    for count in range(P):
-        q, at = order[count], starts[count]
-        c, a, n, ring = old.contour[q], old.starts[q], old.starts[q + 1] - old.starts[q], old.closed[q]
-        m, turns, sign = offsets[c + 1] - offsets[c], flipped[c], -1.0 if flipped[c] else 1.0
-        lap = m if ring and old.places[a] > 0.0 else 0
-        for end in range(2):
-            other = 1 - end if turns else end
-            joints[count, end] = m - old.joints[q, other] if turns else old.joints[q, end]
-            for v in range(masters):
-                for axis in range(2):
-                    tangents[count, v, end, axis] = sign * old.tangents[q, v, other, axis]
-        for r in range(n):
-            s = a + r
-            if turns:
-                s = a + (n - r if ring else n - 1 - r) % n  # the first vertex of a closed curve stays the first
-            places[at + r] = m + lap - old.places[s] if turns else old.places[s]
-            for v in range(masters):
-                vertices[at + r, v, 0], vertices[at + r, v, 1] = old.vertices[s, v, 0], old.vertices[s, v, 1]
-        if turns and ring:
-            places[at] -= m
-        starts[count + 1] = at + n
-    return (
-        old.contour, joints, old.spans[order], old.closed[order], starts, vertices, places, tangents, old.errors[order],
-    )  # fmt: skip
+    turns, size = flipped[pieces.contour], np.diff(offsets)[pieces.contour]
+    if not turns.any():
+        return pieces
+    first, counts, ring = pieces.starts[:-1], np.diff(pieces.starts), pieces.closed > 0
+    whose = np.repeat(np.arange(len(first)), counts)
+    row, back = np.arange(len(whose)) - first[whose], turns[whose]
+    other = (counts - 1 + pieces.closed)[whose] - row  # the first vertex of a closed curve stays the first
+    own = first[whose] + np.where(back, other % counts[whose], row)
+    lap = size * (1 + (ring & (pieces.places[first] > 0.0)))
+    places = np.where(back, lap[whose] - pieces.places[own], pieces.places[own])
+    places[first[turns & ring]] -= size[turns & ring]
+    joints = np.where(turns[:, None], size[:, None] - pieces.joints[:, ::-1], pieces.joints)
+    tangents = np.where(turns[:, None, None, None], -pieces.tangents[:, :, ::-1], pieces.tangents)
+    return pieces._replace(joints=joints, vertices=pieces.vertices[own], places=places, tangents=tangents)

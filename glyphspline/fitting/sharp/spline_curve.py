@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import put
 from ...compiled import compiled
 from ...curves.cubics import jet, newton_step
 from ...interpolation.kernels.lemma2 import add_fixed, one_interval
@@ -38,8 +39,8 @@ class Curve(NamedTuple):
     """A cubic spline of k spans and its vertices in K masters.
 
     Attributes:
-        size: (2,) k, and whether the curve is closed.
-        p: (K, k + 1, 2) the vertices, of which a closed curve has k.
+        k: the number of spans. closed: 1 for a closed curve, or else 0.
+        p: (K, n, 2) the vertices, of an arc k + 1, of a closed curve k.
         X: (K, k + 3, 2) the control points: slot i in row i + 1.
         h: (k + 5,) the knot intervals: that of span s in entry s + 2.
         W: (k, 4, 4) Bézier weights: the Bézier points of span s are ``W[s] @ X[v, s : s + 4]``.
@@ -49,7 +50,8 @@ class Curve(NamedTuple):
         e: (K, k + 1, 2) vertices less footpoints. d: (K, 2) derivatives at the last footpoint looked at.
     """
 
-    size: IntArray
+    k: int
+    closed: int
     p: FloatArray
     X: FloatArray
     h: FloatArray
@@ -62,12 +64,11 @@ class Curve(NamedTuple):
 
 
 @compiled
-def empty_curve(masters: int, k: int, closed: int) -> Curve:
-    """Arrays for a curve of k spans."""
-    size = np.empty(2, dtype=np.int64)
-    size[0], size[1] = k, closed
+def curve_of(p: FloatArray, closed: int) -> Curve:
+    """Arrays for a curve with vertices (K, n, 2)."""
+    masters, k = p.shape[0], p.shape[1] - 1 + closed
     return Curve(
-        size, np.empty((masters, k + 1, 2)), np.empty((masters, k + 3, 2)), np.zeros(k + 5), np.empty((k, 4, 4)),
+        k, closed, p.copy(), np.empty((masters, k + 3, 2)), np.zeros(k + 5), np.empty((k, 4, 4)),
         np.empty((masters, k, 4, 2)), np.zeros(k + 1), np.empty((k + 1, 2)), np.empty((masters, k + 1, 2)),
         np.empty((masters, 2)),
     )  # fmt: skip
@@ -76,15 +77,10 @@ def empty_curve(masters: int, k: int, closed: int) -> Curve:
 @compiled
 def copy_points(source: Curve, target: Curve) -> None:
     """Copy the vertices, control points and footpoints of a curve into the arrays of another one of as many spans."""
-    k = source.size[0]
-    for i in range(k + 1):
-        target.t[i] = source.t[i]
-        target.bounds[i, 0], target.bounds[i, 1] = source.bounds[i, 0], source.bounds[i, 1]
-    for v in range(len(source.p)):
-        for i in range(k + 1):
-            target.p[v, i, 0], target.p[v, i, 1] = source.p[v, i, 0], source.p[v, i, 1]
-        for i in range(k + 3):
-            target.X[v, i, 0], target.X[v, i, 1] = source.X[v, i, 0], source.X[v, i, 1]
+    put(source.p, target.p)
+    put(source.X, target.X)
+    put(source.t, target.t)
+    put(source.bounds, target.bounds)
 
 
 @compiled
@@ -100,31 +96,24 @@ def chord(p: FloatArray, i: int, j: int) -> float:
 @compiled
 def begun(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
     """A curve with vertices (K, n, 2), and if it is an arc with the tips (K, 2, 2) of its end handles."""
-    masters, n = p.shape[0], p.shape[1]
-    k = n - 1 + closed
-    curve = empty_curve(masters, k, closed)
-    for v in range(masters):
+    curve = curve_of(p, closed)
+    k = curve.k
+    for v in range(0 if closed else len(p)):
+        X = curve.X[v]
         for axis in range(2):
-            for i in range(n):
-                curve.p[v, i, axis] = p[v, i, axis]
-            if not closed:
-                curve.X[v, 0, axis], curve.X[v, k + 2, axis] = p[v, 0, axis], p[v, k, axis]
-                curve.X[v, 1, axis], curve.X[v, k + 1, axis] = tips[v, 0, axis], tips[v, 1, axis]
+            X[0, axis], X[k + 2, axis] = p[v, 0, axis], p[v, k, axis]
+            X[1, axis], X[k + 1, axis] = tips[v, 0, axis], tips[v, 1, axis]
     return curve
 
 
 @compiled
 def result_of(curve: Curve) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Copies of a curve's vertices (K, n, 2), tips of handles (K, 2, 2), Bézier points (K, k, 4, 2), knot intervals."""
-    masters, k, closed = len(curve.p), curve.size[0], curve.size[1]
-    p, tips = np.empty((masters, k + 1 - closed, 2)), np.zeros((masters, 2, 2))
-    for v in range(masters):
+    tips = np.zeros((len(curve.p), 2, 2))
+    for v in range(0 if curve.closed else len(tips)):
         for axis in range(2):
-            for i in range(k + 1 - closed):
-                p[v, i, axis] = curve.p[v, i, axis]
-            if not closed:
-                tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
-    return p, tips, curve.b.copy(), curve.h.copy()
+            tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, curve.k + 1, axis]
+    return curve.p.copy(), tips, curve.b.copy(), curve.h.copy()
 
 
 @compiled
@@ -142,9 +131,9 @@ def tips_of(p: FloatArray, tangents: FloatArray) -> FloatArray:
 @compiled
 def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
     """Make the handles of tied ends the directions (K, 2, 2) times one number; ``free``: see :class:`.feet.Samples`."""
-    k, X = curve.size[0], curve.X
+    k, X = curve.k, curve.X
     for end in range(2):
-        if curve.size[1] or free[end] != TIED:
+        if curve.closed or free[end] != TIED:
             continue
         at, tip = (0, 1) if end == 0 else (k + 2, k + 1)
         along = whole = 0.0
@@ -160,7 +149,7 @@ def hold_tied(curve: Curve, directions: FloatArray, free: IntArray) -> None:
 @compiled
 def set_knots(curve: Curve) -> bool:
     """Knot intervals from the chords, and the Bézier weights; False if a chord has no length."""
-    k, closed, p, h = curve.size[0], curve.size[1], curve.p, curve.h
+    k, closed, p, h = curve.k, curve.closed, curve.p, curve.h
     least = np.inf
     for s in range(k):
         e = s + 1 if s + 1 < k or not closed else 0
@@ -192,7 +181,7 @@ def span_weights(h: FloatArray, s: int, W: FloatArray) -> None:
 @compiled
 def iterate(curve: Curve, tolerance: float, most: int) -> float:
     """Variant 2 (Algorithm 2) from the present control points, in at most ``most`` passes; the largest error left."""
-    k, closed, X, e, masters = curve.size[0], curve.size[1], curve.X, curve.e, len(curve.X)
+    k, closed, X, e, masters = curve.k, curve.closed, curve.X, curve.e, len(curve.X)
     error = 0.0
     for n in range(most + 1):
         for v in range(masters):
@@ -233,7 +222,7 @@ def find_footpoint(curve: Curve, i: int) -> None:
     Where Newton's last step is short, it is the part across the curve at the point before it.
     """
     before, after, e, d = curve.h[i + 1], curve.h[i + 2], curve.e, curve.d
-    last = i - 1 if i > 0 else curve.size[0] - 1
+    last = i - 1 if i > 0 else curve.k - 1
     low, high, t = curve.bounds[i, 0], curve.bounds[i, 1], curve.t[i]
     for step in range(3):
         ahead = t >= 0
@@ -267,7 +256,7 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
     """
     if not set_knots(curve):
         return np.inf
-    k, closed = curve.size[0], curve.size[1]
+    k, closed = curve.k, curve.closed
     before, after = np.empty(4), np.empty(4)
     for i in range(1 - closed, k):
         for v in range(len(curve.X)):
@@ -289,6 +278,6 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float) -> float:
 def has_intervals(curve: Curve) -> bool:
     """Whether Lemma 2 has an interval for every vertex at the knots of the last cold run."""
     found = True
-    for i in range(1 - curve.size[1], curve.size[0]):
+    for i in range(1 - curve.closed, curve.k):
         found = found and curve.bounds[i, 0] < curve.bounds[i, 1]
     return found

@@ -79,7 +79,7 @@ def differentiate(curve: Curve, system: System) -> None:
 
     Those by the knots are differences; a knot's influence beyond two spans to either side is small and left out.
     """
-    k, closed, h = curve.size[0], curve.size[1], curve.h
+    k, closed, h = curve.k, curve.closed, curve.h
     for v in range(len(curve.X)):
         X, frames, moves = curve.X[v], system.frames[v], system.moves[v]
         for i in range(k + 1 - closed):
@@ -127,8 +127,8 @@ def knots_per_step(curve: Curve, v: int, i: int) -> float:
     """
     if len(curve.p) == 1:
         return 1.0
-    p, k = curve.p[v], curve.size[0]
-    last, after = i - 1 if i > 0 else k - 1, i + 1 if i + 1 < k or not curve.size[1] else 0
+    p, k = curve.p[v], curve.k
+    last, after = i - 1 if i > 0 else k - 1, i + 1 if i + 1 < k or not curve.closed else 0
     own = length(p[i, 0] - p[last, 0], p[i, 1] - p[last, 1]) + length(p[after, 0] - p[i, 0], p[after, 1] - p[i, 1])
     both = curve.h[i + 1] + curve.h[i + 2]
     return both / own if own * 4.0 > both else 4.0
@@ -137,10 +137,10 @@ def knots_per_step(curve: Curve, v: int, i: int) -> float:
 @inlined
 def shift_knot(curve: Curve, i: int, delta: float) -> None:
     """Move knot i of the intervals, and of their repetition around a closed curve."""
-    k, h = curve.size[0], curve.h
+    k, h = curve.k, curve.h
     h[(i - 1) % k + 2] += delta
     h[i + 2] -= delta
-    for n in range(2 if curve.size[1] else 0):
+    for n in range(2 if curve.closed else 0):
         h[n], h[k + 2 + n] = h[k + n], h[2 + n]
 
 
@@ -227,13 +227,13 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
             own = rows.lever[v, r] * rows.slip[v, r] / scale
             square = own * own
             total += square * square + 0.02 * square if minimax else square
-    for s in range(1 - curve.size[1], curve.size[0]):
+    for s in range(1 - curve.closed, curve.k):
         excess = ratio_excess(curve, s)
         total += rows.e.size / (1 + EXTRA) * (excess * excess)
     thirds = 0.0  # the integral of the squared third derivative across the curve
     for v in range(len(curve.b)):
         b = curve.b[v]
-        for s in range(curve.size[0]):
+        for s in range(curve.k):
             nx, ny = middle_normal(b[s])
             third = third_along(b, s, nx, ny)
             thirds += third * third / fifth_power(curve.h[s + 2])
@@ -273,7 +273,7 @@ def solve_step(
         for v in range(len(system.step)):
             equations(curve, system, v, damping, weight, free)
             solve(system.A, system.step[v], system.first, system.step.shape[1])
-        agreed = tied and agree_on_handles(curve.size, system, directions, free)
+        agreed = tied and agree_on_handles(curve.k, curve.closed, system, directions, free)
         tied = False
 
 
@@ -284,7 +284,7 @@ def equations(curve: Curve, system: System, v: int, damping: float, weight: int,
     Ratios of adjacent chords are brought back to what is allowed; their weight is the number of samples.
     """
     A, g, first, place = system.A, system.step[v], system.first, system.place
-    k, closed, h, n = curve.size[0], curve.size[1], curve.h, len(system.first)
+    k, closed, h, n = curve.k, curve.closed, curve.h, len(system.first)
     for r in range(n):
         g[r], first[r] = 0.0, r
         for c in range(0 if closed and r >= n - BAND else max(r - BAND, 0), r + 1):
@@ -340,12 +340,12 @@ def _scatter(A: FloatArray, g: FloatArray, first: IntArray, index: IntArray, gra
 
 
 @compiled
-def agree_on_handles(sizes: IntArray, system: System, directions: FloatArray, free: IntArray) -> bool:
+def agree_on_handles(k: int, closed: int, system: System, directions: FloatArray, free: IntArray) -> bool:
     """Give the handles of tied ends one factor, the mean of what the masters ask for; whether any end is tied."""
-    k, tied = sizes[0], False
+    tied = False
     for end, i in ((0, 0), (1, k)):
         r = 2 * system.place[i + 1]
-        if sizes[1] or free[end] != TIED or r < 0:
+        if closed or free[end] != TIED or r < 0:
             continue
         tied, along, whole = True, 0.0, 0.0
         for v in range(len(system.step)):

@@ -8,20 +8,18 @@ see :mod:`.vertex_steps`. What decides is here, in Python; what computes is comp
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
-from functools import cached_property
 from math import inf
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ...types import FloatArray, IntArray
+from ...types import FloatArray
 from ..first_good import first_good
 from ..ladders import STARTS
 from .corners import Joints
 from .cubics import fit_cubic
 from .feet import Samples, places_beside
-from .pieces import Pieces
+from .pieces import Piece
 from .settings import SharpSettings
 from .spline_curve import FREE, tips_of
 from .vertex_steps import move_vertices
@@ -75,79 +73,64 @@ class TriedCurve(NamedTuple):
 
 
 def fit_spline(
-    joints: Joints, piece: Pieces, near: float, settings: SharpSettings, given: bool, most: int = MOST
-) -> Pieces:  # fmt: skip
+    joints: Joints, piece: Piece, near: float, settings: SharpSettings, given: bool, most: int = MOST
+) -> Piece:  # fmt: skip
     """One spline, of as few spans as the search finds, in the place of a piece; with an infinite error there is none.
 
     Args:
         near: how near all samples have to be. given: begin from the piece's own vertices and tangents.
         most: spans. With a limit of its own the search begins there: what that many do not follow, few would.
     """
-    k, closed, limited = int(piece.spans[0]), int(piece.closed[0]), most < MOST
-    missed, begun = float(piece.errors[0]) if k == 1 else inf, k if given else 0
-    samples = samples_between(joints[:], int(piece.joints[0, 0]), int(piece.joints[0, 1]), closed)
+    k, closed, limited = piece.spans, piece.closed, most < MOST
+    missed, begun = piece.error if k == 1 else inf, k if given else 0
+    samples = samples_between(joints[:], *piece.joints, closed)
     alone, most = len(samples.Q) == 1, min(most, len(samples.places) - 1)
     if begun == 1 and alone:
         free, tangents = (bool(samples.free[0] == FREE), bool(samples.free[1] == FREE)), piece.tangents.copy()
-        missed = fit_cubic(samples.Q[0], samples.directions[0], free, near, settings.cubic_rounds, tangents[0, 0])
+        missed = fit_cubic(samples.Q[0], samples.directions[0], free, near, settings.cubic_rounds, tangents[0])
         if missed <= near:
-            return piece._replace(tangents=tangents, errors=np.array([missed]))
+            return piece._replace(tangents=tangents, error=missed)
         begun = 0
-    wanted = int(np.rint(settings.guess * min(float(samples.D[-1]), len(samples.places))))
+    wanted = round(settings.guess * min(float(samples.D[-1]), len(samples.places)))
     least = 4 if closed else (2 if alone else 1)
     most = min(2 * max(wanted, 4, begun) + 16, most)
     # A cubic that misses the tolerance by less than this factor is followed by a try with two spans: this saves 483
     # segments with "fast"; without a limit 289 more, for 1.4 times the time.
     guess = most if limited else 2 if not closed and missed < 30.0 * near else max(least, wanted)
-    none = piece._replace(errors=np.array([inf]))
+    none = piece._replace(error=inf)
     if max(guess, least, begun) > most:
         return none
     search = Search(samples, closed, near, settings, most)
     first = None
     if begun:
         points = np.ascontiguousarray(piece.vertices.swapaxes(0, 1))
-        first = points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents[0])
+        first = points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents)
     starts = STARTS if given or not alone else 1  # a stretch that none follows is cut in two, and its parts begin anew
     best = first_good(search.curves(first, guess, wanted, starts), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
         return none
     found = search.piece(piece, search.thinned(best, max(least, begun)) if best.spans > begun else best)
-    if begun and found.spans[0] > begun:  # more were put between old ones than a new guess may take
+    if begun and found.spans > begun:  # more were put between old ones than a new guess may take
         other = fit_spline(joints, piece, near, settings, given=False)
-        return other if other.errors[0] <= near and other.spans[0] < found.spans[0] else found
+        return other if other.error <= near and other.spans < found.spans else found
     return found
 
 
-@dataclass(frozen=True)
 class Search:
     """The search for the spline of a stretch.
 
     Attributes:
-        samples: of the stretch. closed: 1 for a closed curve, or else 0. near: how near all of them have to be.
-        most: spans. guessed: numbers of spans that a guess was made with.
+        samples: of the stretch. closed: 1 for a closed curve, or else 0. most: spans.
+        near: how near all samples have to be. limits: the same, and margin and residual of the interpolation.
+        outline: what is followed. alone: whether it is its only master.
+        guessed: numbers of spans that a guess was made with.
     """
 
-    samples: Samples
-    closed: int
-    near: float
-    settings: SharpSettings
-    most: int
-    guessed: set[int] = field(default_factory=set)
-
-    @cached_property
-    def outline(self) -> tuple[FloatArray, FloatArray, IntArray]:
-        """What is followed."""
-        return self.samples.Q, self.samples.directions, self.samples.free
-
-    @cached_property
-    def limits(self) -> tuple[float, float, float]:
-        """How near the curve has to be to the samples; margin and residual of the interpolation."""
-        return self.near, self.settings.margin, self.settings.residual
-
-    @cached_property
-    def alone(self) -> bool:
-        """Whether the outline is its only master."""
-        return len(self.samples.Q) == 1
+    def __init__(self, samples: Samples, closed: int, near: float, settings: SharpSettings, most: int) -> None:
+        self.samples, self.closed, self.near, self.settings, self.most = samples, closed, near, settings, most
+        self.limits = near, settings.margin, settings.residual
+        self.outline, self.alone = (samples.Q, samples.directions, samples.free), len(samples.Q) == 1
+        self.guessed = set[int]()
 
     def curves(self, first: Vertices | None, guess: int, wanted: int, starts: int) -> Iterator[TriedCurve]:
         """Curves whose vertices have moved, each with more vertices where the last one misses the tolerance; where that
@@ -186,17 +169,15 @@ class Search:
         settings = self.settings
         for n in range(settings.passes if best.spans > least else 0):
             before, tried, failed = best.spans, False, 0
-            left, costs = [True] * before, self.costs(best)
+            left, cheapest = [True] * before, self.cheapest(best)
             while failed < settings.failures and best.spans > least:
-                choice = [i for i, cost in enumerate(costs) if left[i] and cost <= settings.dear * self.near]
-                if not choice:
+                i = next((i for i in cheapest if left[i]), None)
+                if i is None:
                     break
                 tried = True
-                i = min(choice, key=costs.__getitem__)
-                fewer = without(best.vertices, i, self.closed)
-                curve = self.moved(fewer, settings.removal_rounds, i, settings.reach)
+                curve = self.moved(without(best.vertices, i, self.closed), settings.removal_rounds, i, settings.reach)
                 if curve.error <= self.near:
-                    best, costs, failed = curve, self.costs(curve), 0
+                    best, cheapest, failed = curve, self.cheapest(curve), 0
                     del left[i]
                 else:
                     left[i], failed = False, failed + 1
@@ -225,10 +206,11 @@ class Search:
         more: Vertices = insert_vertices(curve.vertices, curve.beziers, curve.errors, self.near, growth, self.most)
         return more
 
-    def costs(self, curve: TriedCurve) -> list[float]:
-        """What it is estimated to cost to take out each vertex of a curve."""
+    def cheapest(self, curve: TriedCurve) -> Iterator[int]:
+        """The vertices of a curve that are worth a try to take out, by what that is estimated to cost."""
         costs: list[float] = removal_costs(curve.beziers, curve.h, curve.errors, self.closed).tolist()
-        return costs
+        dear = self.settings.dear * self.near
+        return iter(sorted((i for i, cost in enumerate(costs) if cost <= dear), key=costs.__getitem__))
 
     def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:
         """The curve once its vertices have moved, in ``rounds`` steps at most: up to ``reach`` on either side of vertex
@@ -239,13 +221,11 @@ class Search:
         reach = k if reach is None else reach
         return TriedCurve(k, *move_vertices(vertices, self.closed, self.outline, self.limits, steps, i, reach))
 
-    def piece(self, piece: Pieces, curve: TriedCurve) -> Pieces:
+    def piece(self, piece: Piece, curve: TriedCurve) -> Piece:
         """The curve in the place of a piece."""
         samples = self.samples
         error, places, tangents = places_beside(
             samples.Q, samples.places, samples.lap, curve.beziers, curve.h, self.closed, self.near
         )
-        return piece._replace(
-            spans=np.array([curve.spans]), starts=np.array([0, len(places)]), places=places, errors=np.array([error]),
-            vertices=curve.points.swapaxes(0, 1), tangents=tangents[None],
-        )  # fmt: skip
+        contour, joints, closed = piece.contour, piece.joints, self.closed
+        return Piece(contour, joints, curve.spans, closed, curve.points.swapaxes(0, 1), places, tangents, error)

@@ -20,7 +20,7 @@ from .spline_curve import (
     Curve,
     begun,
     copy_points,
-    empty_curve,
+    curve_of,
     has_intervals,
     hold_tied,
     interpolate_cold,
@@ -63,10 +63,11 @@ def move_vertices(
         the knot intervals as :class:`.spline_curve.Curve` has them, and (k,) the largest distance in each span.
     """
     (samples, directions, free), (near, margin, residual) = outline, limits
-    masters, n, k = samples.shape[0], samples.shape[1], vertices[0].shape[1] - 1 + closed
+    (p, tips), masters, n = vertices, samples.shape[0], samples.shape[1]
+    k = p.shape[1] - 1 + closed
     owned = (
-        begun(vertices[0], vertices[1], closed), empty_curve(masters, k, closed), empty_rows(masters, n),
-        empty_rows(masters, n), system_of(masters, k, closed, i, reach),
+        begun(p, tips, closed), curve_of(p, closed), empty_rows(masters, n), empty_rows(masters, n),
+        system_of(masters, k, closed, i, reach),
     )  # fmt: skip
     curve, trial, rows, tried, system = borrowed(owned)
     hold_tied(curve, directions, free)
@@ -75,7 +76,7 @@ def move_vertices(
     for m in range(rounds):
         hope *= STRIDES[min(m, 2)]
     if cold < np.inf:
-        error = measure(samples, curve.b, curve.h, curve.size, near, (False, rows.span, rows.x), rows)
+        error = measure(samples, curve.b, curve.h, curve.closed, near, (False, rows.span, rows.x), rows)
         wobble = _wobble_weight(curve.h, k)
     else:
         rounds = -1
@@ -85,7 +86,7 @@ def move_vertices(
             cold = interpolate_cold(trial, margin, residual)
             if cold < residual:
                 curve, trial = trial, curve
-                error = measure(samples, curve.b, curve.h, curve.size, near, (True, rows.span, rows.x), rows)
+                error = measure(samples, curve.b, curve.h, curve.closed, near, (True, rows.span, rows.x), rows)
         passed = error <= near and cold < residual and has_intervals(curve)
         if passed or m == rounds or error > hope or (m > 1 and masters == 1 and _spans_off(rows, k, near) >= SPANS_OFF):
             break
@@ -100,7 +101,7 @@ def move_vertices(
             if _advance(curve, trial, system.frames, system.moves, system.step, system.place, share):
                 hold_tied(trial, directions, free)
                 iterate(trial, enough, 12)
-                new = measure(samples, trial.b, trial.h, trial.size, near, (True, rows.span, rows.x), tried)
+                new = measure(samples, trial.b, trial.h, trial.closed, near, (True, rows.span, rows.x), tried)
                 if objective(trial, tried, error, minimax, wobble) < old:
                     break
             failures += 1
@@ -149,7 +150,7 @@ def _advance(
         _move_points(curve, trial.X[v], trial.p[v], v, (frames[v], moves[v], step[v], place), share)
     if not set_knots(trial):
         return False
-    k, closed = curve.size[0], curve.size[1]
+    k, closed = curve.k, curve.closed
     for v in range(0 if closed else len(step)):
         p, X, old = trial.p[v], trial.X[v], curve.X[v]
         for end, tip, i in ((0, 1, 0), (k + 2, k + 1, k - 1)):
@@ -174,7 +175,7 @@ def _move_points(
         by: ``frames``, ``moves`` and ``step`` of this master, and ``place``, see :class:`.spline_equations.System`.
     """
     frames, moves, step, place = by
-    k, closed, h = curve.size[0], curve.size[1], curve.h
+    k, closed, h = curve.k, curve.closed, curve.h
     for i in range(k + 1 - closed):
         r = 2 * place[i + 1]
         if r < 0:

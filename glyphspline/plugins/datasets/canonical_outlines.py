@@ -23,7 +23,7 @@ import numpy as np
 
 from ...compiled import compiled
 from ...curves.cubics import jet
-from ...curves.integrals import area
+from ...curves.integrals import areas
 from ...outlines.contour_arrays import ContourArrays, joined, offsets_of
 from ...outlines.ink import ink_sides
 from ...outlines.outline import Contours, Outline
@@ -37,27 +37,23 @@ def canonical_outlines(outlines: Sequence[Outline]) -> list[Outline]:
     glyphs = offsets_of([outline.arrays.num_contours for outline in outlines])
     sides = np.concatenate([np.empty(0), *(ink_sides(given.part(*ends)) for ends in pairwise(glyphs.tolist()))])
     cubics = all_cubics(given)
-    areas = _areas(cubics, given.offsets)
+    signed = areas(cubics, given.offsets)
     contours, kept = _distinct(given, cubics)
     owner = np.repeat(np.arange(len(outlines)), np.diff(glyphs))[kept]
-    turned = _reversed(contours, _backward(contours, areas[kept], sides[kept]))
+    turned = _reversed(contours, _backward(contours, signed[kept], sides[kept]))
     firsts = turned.offsets[:-1] + _first_joints(turned)
     points = turned.points[_rolled(turned.starts, offsets_of(turned.degrees)[firsts])]
     found = turned._replace(points=points, degrees=turned.degrees[_rolled(turned.offsets, firsts)])
     cubics = all_cubics(found)
     lowest = [lower_left(cubics[first:last])[1:] for first, last in pairwise(found.offsets.tolist())]
     lengths, low, left = np.diff(found.offsets), *np.array(lowest).reshape(-1, 2).T
-    order = np.lexsort((lengths, -np.abs(_areas(cubics, found.offsets)), left, low, owner))
+    order = np.lexsort((lengths, -np.abs(areas(cubics, found.offsets)), left, low, owner))
     ends = np.searchsorted(owner, np.arange(len(outlines) + 1))
     found = found.chosen(order)
     return [
         replace(outline, contours=Contours(found.part(first, last)))
         for outline, (first, last) in zip(outlines, pairwise(ends.tolist()), strict=True)
     ]
-
-
-def _areas(cubics: FloatArray, offsets: IntArray) -> FloatArray:
-    return np.array([area(cubics[first:last]) for first, last in pairwise(offsets.tolist())])
 
 
 def _distinct(contours: ContourArrays, cubics: FloatArray) -> tuple[ContourArrays, IntArray]:
