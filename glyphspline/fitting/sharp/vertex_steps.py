@@ -72,7 +72,7 @@ def move_vertices(
     curve, trial, rows, tried, system = borrowed(owned)
     hold_tied(curve, directions, free)
     error, passed, wobble, damping, enough = np.inf, False, 0.0, 1e-2, ENOUGH * near
-    cold, hope = interpolate_cold(curve, margin, max(enough, residual)), near if masters == 1 else np.inf
+    cold, hope = interpolate_cold(curve, margin, max(enough, residual), True), near if masters == 1 else np.inf
     for m in range(rounds):
         hope *= STRIDES[min(m, 2)]
     if cold < np.inf:
@@ -83,7 +83,7 @@ def move_vertices(
     for m in range(rounds + 1):
         if error <= near:
             copy_points(curve, trial)
-            cold = interpolate_cold(trial, margin, residual)
+            cold = interpolate_cold(trial, margin, residual, False)
             if cold < residual:
                 curve, trial = trial, curve
                 error = measure(samples, curve.b, curve.h, curve.closed, near, (True, rows.span, rows.x), rows)
@@ -100,7 +100,7 @@ def move_vertices(
             share = 0.5 if minimax else 1.0
             if _advance(curve, trial, system.frames, system.moves, system.step, system.place, share):
                 hold_tied(trial, directions, free)
-                iterate(trial, enough, 12)
+                iterate(trial, enough, 12, True)
                 new = measure(samples, trial.b, trial.h, trial.closed, near, (True, rows.span, rows.x), tried)
                 if objective(trial, tried, error, minimax, wobble) < old:
                     break

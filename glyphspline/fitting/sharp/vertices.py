@@ -30,7 +30,7 @@ def samples_between(around: JointArrays, i: int, j: int, closed: int) -> Samples
         for r in range(1 - closed, n):
             h[r] = min(h[r], h[r - 1] + GROWTH * (step[r] + step[r - 1]) / 2)
         for r in range(n - 2 + closed, -1, -1):
-            e = (r + 1) % n
+            e = r + 1 if r + 1 < n else 0
             h[r] = min(h[r], h[e] + GROWTH * (step[r] + step[e]) / 2)
     D[0] = 0.0
     for r in range(n):

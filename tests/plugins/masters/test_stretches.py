@@ -104,7 +104,7 @@ def points_of(font: Font, name: str) -> int:
 
 def test_no_kink_that_the_source_has_not(tmp_path: Path) -> None:
     made, fewer, anew = 0, 0, 0
-    for seed in (*range(8), 38):  # few curves kink by themselves: of 40, the last one of these does
+    for seed in (*range(8), 49, 69, 89, 99, 128):  # few curves kink by themselves: of 130, the last five of these do
         font = drawn_font(tmp_path, seed)
         masters = font.masters("n")
         new = converted(masters, tolerance=TOLERANCE / 2)
