@@ -79,17 +79,23 @@ def dispatcher(function: Callable[..., Any], role: str, **options: bool) -> Any:
     return made
 
 
-class _Inner(Compiler):  # type: ignore[misc, unused-ignore]
-    """How functions for compiled callers are compiled."""
+class _Linking(Compiler):  # type: ignore[misc, unused-ignore]
+    """How functions are compiled, with a library of :mod:`.linking`."""
 
-    linked_as: type[Linked | Whole] = Linked
+    linked_as: type[Linked | Whole]
 
     def __init__(self, typing: Any, target: Any, library: Any, *rest: Any) -> None:
         super().__init__(typing, target, self.linked_as(target.codegen()), *rest)
 
 
-class _Entry(_Inner):
-    """How functions for callers in Python are compiled."""
+class _Inner(_Linking):
+    """Functions for compiled callers."""
+
+    linked_as = Linked
+
+
+class _Entry(_Linking):
+    """Functions for callers in Python."""
 
     linked_as = Whole
 

@@ -15,7 +15,7 @@ and code takes a quarter longer to compile.
 """
 
 
-class _Named(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
+class _KeptLibrary(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
     """Code that is kept as machine code."""
 
     def __init__(self, codegen: Any) -> None:
@@ -23,7 +23,7 @@ class _Named(JITCodeLibrary):  # type: ignore[misc, unused-ignore]
         self.enable_object_caching()
 
 
-class Linked(_Named):
+class Linked(_KeptLibrary):
     """Code that is linked into that of its callers, and only there is optimised and made machine code.
 
     As it is nowhere called by itself, all that would be for nothing; and once more in the next caller above.
@@ -42,7 +42,7 @@ class Linked(_Named):
         self._final_module.name = whole.name
 
 
-class Whole(_Named):
+class Whole(_KeptLibrary):
     """Code that Python calls, with all that is linked into it.
 
     An array is eight numbers or more, and a curve is ten arrays. As nobody else calls the functions linked, LLVM leaves

@@ -37,7 +37,7 @@ def refit(
             ``in_place``, ``layer``, ``masters``, ``options`` and others.
 
     Returns:
-        A summary of the run: :class:`.Summary`, or of masters :class:`.MastersSummary`.
+        A summary of the run: :class:`.Summary`, or of masters :class:`..masters.summary.MastersSummary`.
 
     Raises:
         OptionError: neither a folder is given nor the source to be changed, or other options are unusable.

@@ -42,7 +42,7 @@ from ...runs.folder import (
 from ...runs.result_text import read_result
 from ...runs.schedule import Place, place_of, sources
 from ...runs.spec import RESULTS, RunSpec, describe, write_run
-from ...runs.summary import NAMED, MastersSummary
+from ...runs.summary import NAMED
 from ...types import FloatArray, MadeOnDemand, counted, listed, rounded_up
 from ...writers.formats import OURS
 from ...writers.svg.document import PolygonData, source_data
@@ -56,6 +56,7 @@ from .designspace import Designspace
 from .glyphs_file import GlyphsFile
 from .redrawn import Redrawn, StoredGlyph, bound_of, of_masters
 from .single_fonts import Unmatched, axis_of, masters_of_fonts
+from .summary import MastersSummary
 
 if TYPE_CHECKING:
     from ...cli.convert import Conversion

@@ -30,10 +30,10 @@ from glyphspline.plugins.masters.new_designspace import write_designspace
 from glyphspline.plugins.masters.new_variable_font import to_new_variable_font
 from glyphspline.plugins.masters.redrawn import Redrawn
 from glyphspline.plugins.masters.single_fonts import masters_of_fonts
+from glyphspline.plugins.masters.summary import MastersSummary
 from glyphspline.plugins.masters.variable_font import to_variable_font
 from glyphspline.readers import Font
 from glyphspline.runs.result_text import from_text, to_text
-from glyphspline.runs.summary import MastersSummary
 from glyphspline.types import BoolArray, FloatArray, MadeOnDemand
 from glyphspline.writers.svg.path_data import path_data
 from tests import topology

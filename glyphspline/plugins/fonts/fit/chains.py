@@ -10,9 +10,9 @@ import numpy as np
 from ....compiled import compiled
 from ....curves.cubics import length
 from ....fitting.sharp.cubics import solve
-from ....fitting.sharp.nearness import add_samples, reweight, shared_feet
 from ....intrinsics import borrowed, keep_alive
 from ....types import BoolArray, FloatArray, IntArray
+from .nearness import add_samples, reweight, shared_feet
 
 ROUNDS = 5
 """Gauss-Newton steps."""

@@ -9,9 +9,9 @@ import numpy as np
 from ....compiled import compiled
 from ....curves.cubics import directions, hidden_extrema, length
 from ....fitting.sharp.corners import NO_HANDLE, turn_between
-from ....fitting.sharp.nearness import certified
 from ....types import BoolArray, FloatArray, IntArray
 from .harmony import end_jump
+from .nearness import certified
 
 CORNER = np.radians(12.5)
 """Turn that a corner keeps."""

@@ -7,7 +7,6 @@ import numpy as np
 from ....compiled import compiled
 from ....curves.cubics import length, square
 from ....fitting.sharp.corners import turn_between
-from ....fitting.sharp.nearness import add_samples, shared_feet, squares
 from ....types import FloatArray, IntArray
 from .chains import (
     LEAST,
@@ -22,6 +21,7 @@ from .chains import (
     set_nodes,
 )
 from .gates import CORNER, KINK
+from .nearness import add_samples, shared_feet, squares
 
 SWEEPS = 4
 """Visits of all control points on the grid."""

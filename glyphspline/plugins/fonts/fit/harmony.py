@@ -17,9 +17,9 @@ import numpy as np
 from ....compiled import compiled
 from ....curves.cubics import length, square
 from ....fitting.sharp.cubics import solve
-from ....fitting.sharp.nearness import add_samples, feet, reweight
 from ....intrinsics import borrowed, keep_alive
 from ....types import FloatArray, IntArray
+from .nearness import add_samples, feet, reweight
 from .run_nodes import FIXED, CubicRun, GuideArrays, RunArrays, align, handles_at, moved, set_kinds, set_moves, sides
 
 ROUNDS = 7

@@ -13,9 +13,9 @@ import numpy as np
 from ....arrays import put
 from ....compiled import compiled, inlined
 from ....curves.cubics import hidden_extrema, length
-from ....fitting.sharp.nearness import own_form, reduced, squares_of_two
 from ....types import FloatArray, IntArray
 from .harmony import FLAT, end_curvature
+from .nearness import own_form, reduced, squares_of_two
 from .run_nodes import CubicRun, RunArrays
 
 MET, NO_KINK, FAREST = 0.095, np.radians(0.45), 0.5

@@ -7,11 +7,11 @@ import numpy as np
 from ....compiled import compiled
 from ....curves.cubics import length
 from ....fitting.sharp.corners import turn_between
-from ....fitting.sharp.nearness import certified
 from ....types import BoolArray, FloatArray
 from .chains import Quads, as_cubics
 from .gates import CORNER, KINK, mixed
 from .grid import is_kink
+from .nearness import certified
 from .outlines import mean
 
 

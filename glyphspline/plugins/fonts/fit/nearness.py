@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled, inlined
-from ...curves.cubics import length
-from ...curves.nearest import near_places
-from ...curves.pairing import Demand, pair_span, room_for
-from ...types import BoolArray, FloatArray
-from .cubics import project
+from ....compiled import compiled, inlined
+from ....curves.cubics import length
+from ....curves.nearest import near_places
+from ....curves.pairing import Demand, pair_span, room_for
+from ....fitting.sharp.cubics import project
+from ....types import BoolArray, FloatArray
 
 
 @compiled
