@@ -82,10 +82,12 @@ def unfitted() -> None:
 
 def rest() -> None:
     """What single options or measures need: united contours, joins."""
+    from ..curves.integrals import area
     from ..outlines.joins import joins
     from ..outlines.overlaps import inked_area
 
     inked_area([DISC, LEAF])
+    area(LEAF.cubics())
     joins(LEAF)
 
 

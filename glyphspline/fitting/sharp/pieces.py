@@ -37,7 +37,7 @@ class Pieces(NamedTuple):
 
 
 class Piece(NamedTuple):
-    """One of them: ``joints`` are two numbers, ``vertices`` (n, K, 2), ``places`` (n,) and ``tangents`` (K, 2, 2)."""
+    """A piece by itself, as it is fitted, with ``vertices`` (n, K, 2), ``places`` (n,) and ``tangents`` (K, 2, 2)."""
 
     contour: int
     joints: tuple[int, int]

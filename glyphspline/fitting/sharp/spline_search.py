@@ -23,7 +23,7 @@ from .pieces import Piece
 from .settings import SharpSettings
 from .spline_curve import FREE, tips_of
 from .vertex_steps import move_vertices
-from .vertices import insert_vertices, place_vertices, removal_costs, samples_between, without
+from .vertices import cheapest, insert_vertices, place_vertices, samples_between, without
 
 PATIENCE = 12
 """Insertions after a first guess from which on all spans that miss the tolerance are cut.
@@ -207,10 +207,9 @@ class Search:
         return more
 
     def cheapest(self, curve: TriedCurve) -> Iterator[int]:
-        """The vertices of a curve that are worth a try to take out, by what that is estimated to cost."""
-        costs: list[float] = removal_costs(curve.beziers, curve.h, curve.errors, self.closed).tolist()
-        dear = self.settings.dear * self.near
-        return iter(sorted((i for i, cost in enumerate(costs) if cost <= dear), key=costs.__getitem__))
+        """The vertices of a curve that are worth a try to take out."""
+        found = cheapest(curve.beziers, curve.h, curve.errors, self.closed, self.settings.dear * self.near)
+        return iter(found.tolist())
 
     def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:
         """The curve once its vertices have moved, in ``rounds`` steps at most: up to ``reach`` on either side of vertex

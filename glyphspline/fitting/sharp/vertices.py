@@ -155,18 +155,18 @@ def shortened(old: FloatArray, tips: FloatArray, p: FloatArray) -> FloatArray:
 
 
 @compiled
-def removal_costs(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed: int) -> FloatArray:
-    """(k,) estimates of what it costs to take out each vertex of a curve that passed; infinite for an arc's end.
+def cheapest(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed: int, dear: float) -> IntArray:
+    """The vertices of a curve that passed, but an arc's ends, whose removal is estimated to cost up to ``dear``, the
+    cheapest first.
 
-    That is the jump of the third derivative at its knot, and the error.
+    The estimate is the jump of the third derivative at the knot, and the error.
     """
-    k = len(errors)
-    costs = np.full(k, np.inf)
+    k, count = len(errors), 0
+    costs, found = np.empty(k), np.empty(k, dtype=np.int64)
     for i in range(1 - closed, k):
-        last = i - 1 if i > 0 else k - 1
+        last, cost = i - 1 if i > 0 else k - 1, 0.0
         before, after = h[i + 1], h[i + 2]
         reach = before * after / (before + after)
-        costs[i] = 0.0
         for v in range(len(beziers)):
             b = beziers[v]
             _, _, dx, dy, _, _ = jet(b, i, 0.0)
@@ -174,6 +174,13 @@ def removal_costs(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed
             nx, ny = -dy / speed, dx / speed
             jump = third_along(b, i, nx, ny) / (after * after * after)
             jump -= third_along(b, last, nx, ny) / (before * before * before)
-            cost = abs(jump) * (reach * reach * reach) / 6 + max(errors[last], errors[i]) / 4
-            costs[i] = max(costs[i], cost)
-    return costs
+            cost = max(cost, abs(jump) * (reach * reach * reach) / 6 + max(errors[last], errors[i]) / 4)
+        if not cost <= dear:
+            continue
+        at = count
+        while at > 0 and costs[at - 1] > cost:
+            costs[at], found[at] = costs[at - 1], found[at - 1]
+            at -= 1
+        costs[at], found[at] = cost, i
+        count += 1
+    return found[:count]
