@@ -16,7 +16,7 @@ import numpy as np
 from ...outlines.contour_arrays import ContourArrays
 from ...types import BoolArray, FloatArray, IntArray
 from .corners import Joints, find_joints
-from .pieces import Piece, Pieces, end_to_end, in_order, joined, piece_of, turned
+from .pieces import Piece, Pieces, chord_lengths, end_to_end, in_order, joined, piece_of, turned
 from .settings import SharpSettings
 from .spline_search import MOST, fit_spline
 from .stretches import PART, WHOLE, simplest
@@ -54,11 +54,7 @@ class Chains(NamedTuple):
     def source(self, piece: Piece) -> Iterator[Piece]:
         """The source's own segments in the place of a piece, as lines and arcs of one span."""
         (i, j), (cubics, degrees) = piece.joints, self.of(piece)
-        squares = np.zeros(j - i)
-        for own in cubics[:, i:j]:
-            chords = np.hypot(own[:, 3, 0] - own[:, 0, 0], own[:, 3, 1] - own[:, 0, 1])
-            squares += chords * chords
-        factors = 3 / np.sqrt(np.where(squares > 0.0, squares / len(cubics), 1.0))  # see chords
+        factors = 3 / chord_lengths((cubics[:, i:j, 3] - cubics[:, i:j, 0]).swapaxes(0, 1))
         for n, (degree, factor) in enumerate(zip(degrees[i:j].tolist(), factors, strict=True), i):
             own, ends = cubics[:, n], (n, n + 1)
             tangents = (own[:, 1::2] - own[:, ::2]) * factor
@@ -83,7 +79,7 @@ def fit_contours(cubics: FloatArray, contours: ContourArrays, settings: SharpSet
     chains, pieces = Chains(chain, degrees, offsets, flipped, known), Pieces(*simple)
     poor = ~(pieces.errors <= near) | (ways > 0)
     tried = [(piece_of(pieces, q), int(ways[q])) for q in np.flatnonzero(poor).tolist()]
-    followed = splines(tried, known, settings)
+    followed = splines(chains, tried, settings)
     found = [own for piece in followed for own in ([piece] if piece.error <= near else chains.source(piece))]
     pieces, _ = _replaced(chains, turned(pieces, chains.offsets, chains.flipped), poor, found)
     return chains, pieces
@@ -97,17 +93,16 @@ def _replaced(chains: Chains, pieces: Pieces, poor: BoolArray, found: list[Piece
     return pieces, np.where(order < len(poor), order, -1)
 
 
-def splines(tried: list[tuple[Piece, int]], joints: dict[int, Joints], settings: SharpSettings) -> Iterator[Piece]:
+def splines(chains: Chains, tried: list[tuple[Piece, int]], settings: SharpSettings) -> Iterator[Piece]:
     """What takes the place of stretches that their line or cubic does not follow, as far as a spline does.
 
     Args:
         tried: with their ways, from :func:`.stretches.simplest`. The parts of a stretch that has corners that do not
             show come before it.
-        joints: of their contours.
     """
     parts, near = list[Piece](), settings.near
     for piece, way in tried:
-        around, most = joints[piece.contour], most_spans(parts, near) if way == WHOLE else MOST
+        around, most = chains.joints(piece, settings), most_spans(parts, near) if way == WHOLE else MOST
         found = piece if piece.error <= near else fit_spline(around, piece, near, settings, False, most)
         if way == PART:
             parts.append(found)

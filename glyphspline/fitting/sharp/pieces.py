@@ -67,6 +67,15 @@ def end_to_end(pieces: Sequence[Piece]) -> Pieces:
     )  # fmt: skip
 
 
+def chord_lengths(chords: FloatArray) -> FloatArray:
+    """(n,) lengths of chords (n, K, 2), the root mean square of those in the masters; 1 for one without length.
+
+    A segment of the source may end where it begins.
+    """
+    squares: FloatArray = (np.hypot(chords[..., 0], chords[..., 1]) ** 2).mean(axis=1)
+    return np.sqrt(np.where(squares > 0.0, squares, 1.0))
+
+
 def joined(pieces: Pieces, others: Pieces) -> Pieces:
     """Two groups of pieces as one."""
     columns = [np.concatenate(each) for each in zip(pieces, others, strict=True)]

@@ -29,7 +29,7 @@ from ..options import Options
 from ..results import ConvertedContours
 from .assembly import certify, put_together
 from .cutting import Chains, fit_contours, refit
-from .pieces import Pieces
+from .pieces import Pieces, chord_lengths
 from .settings import EFFORTS, LONG_LINE
 
 SHARES = {"plain": 0.97, "masters": 0.94}
@@ -201,14 +201,9 @@ def _certified(
 
 
 def chords(pieces: Pieces) -> FloatArray:
-    """(P,) distance of each piece's first two vertices, the root mean square of those in the masters.
-
-    It is 1 for a segment of the source that ends where it begins.
-    """
+    """(P,) distance of each piece's first two vertices, see :func:`.pieces.chord_lengths`."""
     first = pieces.starts[:-1]
-    steps = pieces.vertices[first + 1] - pieces.vertices[first]
-    squares: FloatArray = (np.hypot(steps[..., 0], steps[..., 1]) ** 2).mean(axis=1)
-    return np.sqrt(np.where(squares > 0.0, squares, 1.0))
+    return chord_lengths(pieces.vertices[first + 1] - pieces.vertices[first])
 
 
 def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:

@@ -23,7 +23,7 @@ from .pieces import Piece
 from .settings import SharpSettings
 from .spline_curve import FREE, tips_of
 from .vertex_steps import move_vertices
-from .vertices import cheapest, insert_vertices, place_vertices, samples_between, without
+from .vertices import cheap_removals, insert_vertices, place_vertices, samples_between, without
 
 PATIENCE = 12
 """Insertions after a first guess from which on all spans that miss the tolerance are cut.
@@ -208,7 +208,7 @@ class Search:
 
     def cheapest(self, curve: TriedCurve) -> Iterator[int]:
         """The vertices of a curve that are worth a try to take out."""
-        found = cheapest(curve.beziers, curve.h, curve.errors, self.closed, self.settings.dear * self.near)
+        found = cheap_removals(curve.beziers, curve.h, curve.errors, self.closed, self.settings.dear * self.near)
         return iter(found.tolist())
 
     def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:

@@ -1,7 +1,8 @@
 """Vertices of a spline that move to where they serve best: one kernel of steps of Gauss and Newton.
 
-After each step a few warm passes of variant 2 put the curve through the moved vertices again. What counts is a cold run
-from the vertices alone, as the interpolation that is written makes it.
+After each step a few warm passes, which are eager (:func:`.spline_curve.iterate`), bring the curve near the moved
+vertices again. What counts is a cold run of variant 2 from the vertices alone, as the interpolation that is written
+makes it.
 """
 
 from __future__ import annotations

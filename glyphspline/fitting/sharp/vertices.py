@@ -155,7 +155,7 @@ def shortened(old: FloatArray, tips: FloatArray, p: FloatArray) -> FloatArray:
 
 
 @compiled
-def cheapest(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed: int, dear: float) -> IntArray:
+def cheap_removals(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed: int, dear: float) -> IntArray:
     """The vertices of a curve that passed, but an arc's ends, whose removal is estimated to cost up to ``dear``, the
     cheapest first.
 
