@@ -57,6 +57,17 @@ def test_points_of_a_glyph_become_the_polygons_of_an_experiment(clicking: Any, t
     assert [row["vertices"] for row in made.rows] == [4, 3]
 
 
+@pytest.mark.parametrize("width", range(500, 1000, 100))
+def test_the_sheet_stays_where_it_is_while_the_words_grow(clicking: Any, width: int) -> None:
+    clicking.set_viewport_size({"width": width, "height": 800})
+    before = clicking.locator("#sheet").bounding_box()
+    for _ in range(12):
+        click(clicking, AT[:3])
+        clicking.keyboard.press("Enter")
+    assert clicking.locator("#words").inner_text().endswith("3 + 3 points")
+    assert clicking.locator("#sheet").bounding_box() == before
+
+
 def test_a_picture_is_clicked_on(clicking: Any, tmp_path: Path) -> None:
     picture = tmp_path / "scan.png"
     Image.new("L", (300, 200), 200).save(picture)
