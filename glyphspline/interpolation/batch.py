@@ -35,11 +35,12 @@ def interpolate_batch(polygons: Polygons, method: Method, threads: int | None = 
         polygons = polygons._replace(tangents=np.full((len(offsets) - 1, 2, d), np.nan))
     numbers, whole = room_for(total, len(offsets) - 1, method.closed, d)
 
-    def work(part: tuple[int, int]) -> Any:
-        return interpolate(*part, polygons, method.rule, numbers, whole)
-
+    given: tuple[Any, ...] = (*polygons, method.numbers, numbers, whole)
     parts = _parts(offsets, threads)
-    residuals = work(parts[0]) if len(parts) == 1 else np.concatenate(over_threads(work, parts, threads))
+    if len(parts) == 1:
+        residuals = interpolate(*parts[0], *given)
+    else:
+        residuals = np.concatenate(over_threads(lambda part: interpolate(*part, *given), parts, threads))
     return BatchedInterpolation(offsets, d, method.closed, residuals, numbers, whole)
 
 

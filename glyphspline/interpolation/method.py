@@ -5,13 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from math import nan
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 from ..curves import DEGREES
 from ..errors import OptionError, is_number, is_positive, is_whole, require, require_choice
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from ..types import FloatArray
 
 Parametrisation: TypeAlias = Literal["chord", "uniform", "centripetal"]
 Fallback: TypeAlias = Literal["knot", "peak"]
@@ -47,24 +49,6 @@ TIE = 1e-12
 
 TIE_DISTANCE = 1e-14
 """Distances below this share of the extent count as 0, and as a tie: their last bits are rounding errors."""
-
-
-class Rule(NamedTuple):
-    """What compiled functions read of a :class:`Method`.
-
-    Attributes:
-        exponent: of the chord length in the knots, or ``GIVEN``.
-        tolerance: of residuals; NaN: the one of ``RELATIVE_TOLERANCE``.
-        peak_share: ``PEAK_SHARE`` with ``fallback="peak"``, else 0.
-    """
-
-    closed: bool
-    variant: int
-    margin: float
-    exponent: float
-    tolerance: float
-    peak_share: float
-    max_iterations: int
 
 
 @dataclass(frozen=True)
@@ -115,12 +99,14 @@ class Method:
         return PEAK_SHARE if self.fallback == "peak" else 0.0
 
     @cached_property
-    def rule(self) -> Rule:
-        """The method in numbers."""
+    def numbers(self) -> FloatArray:
+        """(7,) what :func:`.rule.rule_of` reads."""
+        from .rule import Rule, in_numbers  # with NumPy, which a command that checks its options does not need
+
         exponent = GIVEN if self.knots is None else CHORD_EXPONENT[self.knots]
-        tolerance = nan if self.residual_tolerance is None else float(self.residual_tolerance)
-        return Rule(
-            self.closed, self.variant, float(self.margin), exponent, tolerance, self.peak_share, self.max_iterations
+        tolerance = nan if self.residual_tolerance is None else self.residual_tolerance
+        return in_numbers(
+            Rule(self.closed, self.variant, self.margin, exponent, tolerance, self.peak_share, self.max_iterations)
         )
 
     def tolerance_for(self, extent: float) -> float:

@@ -47,18 +47,21 @@ from .kernels.passes import (
     rises,
 )  # fmt: skip
 from .kernels.search import FINE, GIVEN_UP, SearchedCurve, SearchRoom, look_again
-from .method import RELATIVE_TOLERANCE, Rule
+from .method import RELATIVE_TOLERANCE
 from .polygon import LARGEST, SAME_VERTEX, SMALLEST, Polygons
+from .rule import Rule, rule_of
 
 where: Any = np.where  # its types have another result for what may be None
 
 
 @in_numpy(driver.interpolate)
-def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, numbers: FloatArray, whole: IntArray) -> FloatArray:
+def interpolate(
+    k0: int, k1: int, points: FloatArray, offsets: IntArray, knots: FloatArray, tangents: FloatArray, held: BoolArray,
+    by_knot: BoolArray, rule_in_numbers: FloatArray, numbers: FloatArray, whole: IntArray,
+) -> FloatArray:  # fmt: skip
     """As :func:`.kernels.driver.interpolate`."""
-    found = laid_out(
-        numbers, whole, len(polygons.points), len(polygons.offsets) - 1, rule.closed, polygons.points.shape[1]
-    )
+    polygons, rule = Polygons(points, offsets, knots, tangents, held, by_knot), rule_of(rule_in_numbers)
+    found = laid_out(numbers, whole, len(points), len(offsets) - 1, rule.closed, points.shape[1])
     _prepare(k0, k1, polygons, rule, found)
     return (driver.iterate if rule.variant in (0, 4) else _iterate)(k0, k1, polygons, rule, found)
 

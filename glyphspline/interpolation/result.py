@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -92,10 +92,6 @@ class Interpolation(Unread):
         return float(self.residuals[-1])
 
 
-Source: TypeAlias = tuple[int, int, int, Sequence[int], int, Any]
-"""Where the fields of a polygon's result are: the arguments of :meth:`BatchedInterpolation.fields`."""
-
-
 class BatchedInterpolation(NamedTuple):
     """Results for K polygons as concatenated arrays; part k of ``points`` is ``offsets[k]:offsets[k + 1]``.
 
@@ -125,30 +121,25 @@ class BatchedInterpolation(NamedTuple):
 
     def results(self, points: FloatArray | None = None) -> list[Any]:
         """All polygons' results, with views of the ``points`` (N, d) if given; None stands for one that was refused."""
+        offsets, rows, first = self.offsets.tolist(), self.whole[: 6 * len(self.offsets) - 6].tolist(), 0
         found: list[Any] = []
-        for source in self._sources(points):
-            result = None if source[3][0] else Interpolation.__new__(Interpolation)
+        for k in range(len(offsets) - 1):
+            row = rows[6 * k : 6 * k + 6]
+            result = None if row[0] else Interpolation.__new__(Interpolation)
             if result is not None:
-                result.__dict__["_source"] = self, source
+                result.__dict__["_source"] = self, (k, offsets[k], offsets[k + 1], row, first, points)
             found.append(result)
+            first += row[2] + 1
         return found
 
     def first(self, points: FloatArray) -> Interpolation | None:
-        """The result of the first polygon, as of :meth:`results`."""
-        source = next(self._sources(points))
-        if source[3][0]:
+        """The result of the first polygon, whose points they are, as of :meth:`results`; its fields are there."""
+        row = self.whole[:6].tolist()
+        if row[0]:
             return None
         result = Interpolation.__new__(Interpolation)
-        result.__dict__.update(self.fields(*source))
+        result.__dict__.update(self.fields(0, 0, len(points), row, 0, points))
         return result
-
-    def _sources(self, points: FloatArray | None) -> Iterator[Source]:
-        """The arguments of :meth:`fields` for all polygons."""
-        offsets, rows, first = self.offsets.tolist(), self.whole[: 6 * len(self.offsets) - 6].tolist(), 0
-        for k in range(len(offsets) - 1):
-            row = rows[6 * k : 6 * k + 6]
-            yield k, offsets[k], offsets[k + 1], row, first, points
-            first += row[2] + 1
 
     def fields(
         self, k: int, start: int, stop: int, row: Sequence[int], first: int, points: FloatArray | None
@@ -160,30 +151,32 @@ class BatchedInterpolation(NamedTuple):
             points: (N, d) of all polygons, or None.
         """
         offsets, d, closed, residuals, numbers, whole = self
+        _, n, iterations, fallbacks, _, uncertified = row
         count = len(offsets) - 1
         total = len(whole) - 6 * count
-        _, n, iterations, fallbacks, _, uncertified = row
         # Where knots, parameters, bounds and control points of it begin, as laid_out has them.
-        u, t, ends = 2 * count + start + k, 3 * count + total + start, 0
-        if not closed:
-            u, t, ends = u - k, t - count, 2
+        u, ends = 2 * count + start, 0
+        t = u + total
+        if closed:
+            u, t = u + k, t + count
+        else:
+            ends = 2
         b, P = t + total + start, t + 3 * total - start + (start + ends * k) * d
         merged, own = NOTHING_MERGED, None if points is None else points[start:stop]
         if n < stop - start:
             kept = whole[6 * count + start :][:n]
             merged, own = np.setdiff1d(np.arange(stop - start), kept), None if own is None else own[kept]
         residuals = residuals[first : first + iterations + 1]
+        controls = numbers[P : P + (n + ends) * d].reshape(n + ends, d)
         return {
-            "spline": Spline.trusted(
-                numbers[P : P + (n + ends) * d].reshape(n + ends, d), numbers[u : u + n + closed], 3, closed
-            ),
+            "spline": Spline.trusted(controls, numbers[u : u + n + closed], 3, closed),
             "parameters": numbers[t : t + n],
             "intervals": numbers[b : b + 2 * n].reshape(n, 2),
             "iterations": iterations,
             "residuals": residuals,
-            "converged": bool(residuals[-1] < numbers[count + k]),
+            "converged": residuals.item(iterations) < numbers.item(count + k),
             "fallbacks": fallbacks,
-            "rate_bound": float(numbers[k]),
+            "rate_bound": numbers.item(k),
             "merged": merged,
             "uncertified": uncertified,
             "points": own,

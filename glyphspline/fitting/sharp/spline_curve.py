@@ -71,17 +71,6 @@ class Curve(NamedTuple):
 
 
 @compiled
-def curve_of(p: FloatArray, closed: int) -> Curve:
-    """Arrays for a curve with vertices (K, n, 2)."""
-    masters, k = p.shape[0], p.shape[1] - 1 + closed
-    return Curve(
-        k, closed, p.copy(), np.empty((masters, k + 3, 2)), np.zeros(k + 5), np.empty((k, 4, 4)),
-        np.empty((masters, k, 4, 2)), np.zeros(k + 1), np.empty((k + 1, 2)), np.empty((masters, k + 1, 2)),
-        np.empty((masters, 2)),
-    )  # fmt: skip
-
-
-@compiled
 def copy_points(source: Curve, target: Curve) -> None:
     """Copy the vertices, control points and footpoints of a curve into the arrays of another one of as many spans."""
     put(source.p, target.p)
@@ -101,11 +90,15 @@ def chord(p: FloatArray, i: int, j: int) -> float:
 
 
 @compiled
-def begun(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
+def curve_of(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
     """A curve with vertices (K, n, 2), and if it is an arc with the tips (K, 2, 2) of its end handles."""
-    curve = curve_of(p, closed)
-    k = curve.k
-    for v in range(0 if closed else len(p)):
+    masters, k = p.shape[0], p.shape[1] - 1 + closed
+    curve = Curve(
+        k, closed, p.copy(), np.empty((masters, k + 3, 2)), np.zeros(k + 5), np.empty((k, 4, 4)),
+        np.empty((masters, k, 4, 2)), np.zeros(k + 1), np.empty((k + 1, 2)), np.empty((masters, k + 1, 2)),
+        np.empty((masters, 2)),
+    )  # fmt: skip
+    for v in range(0 if closed else masters):
         X = curve.X[v]
         for axis in range(2):
             X[0, axis], X[k + 2, axis] = p[v, 0, axis], p[v, k, axis]
@@ -261,15 +254,17 @@ def find_footpoint(curve: Curve, i: int) -> None:
 
 
 @compiled
-def interpolate_cold(curve: Curve, margin: float, tolerance: float, eager: bool) -> float:
-    """Variant 2 from the vertices, as the interpolation runs it if it is not eager; the largest error left, infinite
-    without a curve.
+def interpolate_cold(curve: Curve, margin: float, tolerance: float, eager: bool) -> tuple[float, bool]:
+    """Variant 2 from the vertices, as the interpolation runs it if it is not eager.
 
     It begins from the vertices as control points, and from footpoints at the knots where Lemma 2 allows them.
+
+    Returns:
+        The largest error left, infinite without a curve, and whether Lemma 2 has an interval for every vertex.
     """
     if not set_knots(curve):
-        return np.inf
-    k, closed = curve.k, curve.closed
+        return np.inf, False
+    k, closed, found = curve.k, curve.closed, True
     before, after = np.empty(4), np.empty(4)
     for i in range(1 - closed, k):
         for v in range(len(curve.X)):
@@ -283,14 +278,6 @@ def interpolate_cold(curve: Curve, margin: float, tolerance: float, eager: bool)
         low, high, _, _ = one_interval(before, after, c, 0.0)
         curve.bounds[i, 0], curve.bounds[i, 1] = low, high
         curve.t[i] = min(max(0.0, low), high)
+        found = found and low < high
     # Passes of variant 2 before a curve counts as lost.
-    return iterate(curve, tolerance, 200, eager)
-
-
-@compiled
-def has_intervals(curve: Curve) -> bool:
-    """Whether Lemma 2 has an interval for every vertex at the knots of the last cold run."""
-    found = True
-    for i in range(1 - curve.closed, curve.k):
-        found = found and curve.bounds[i, 0] < curve.bounds[i, 1]
-    return found
+    return iterate(curve, tolerance, 200, eager), found

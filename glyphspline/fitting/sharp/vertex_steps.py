@@ -19,10 +19,8 @@ from .spline_curve import (
     LONGEST_HANDLE,
     SHORTEST_HANDLE,
     Curve,
-    begun,
     copy_points,
     curve_of,
-    has_intervals,
     hold_tied,
     interpolate_cold,
     iterate,
@@ -67,13 +65,14 @@ def move_vertices(
     (p, tips), masters, n = vertices, samples.shape[0], samples.shape[1]
     k = p.shape[1] - 1 + closed
     owned = (
-        begun(p, tips, closed), curve_of(p, closed), empty_rows(masters, n), empty_rows(masters, n),
+        curve_of(p, tips, closed), curve_of(p, tips, closed), empty_rows(masters, n), empty_rows(masters, n),
         system_of(masters, k, closed, i, reach),
     )  # fmt: skip
     curve, trial, rows, tried, system = borrowed(owned)
     hold_tied(curve, directions, free)
     error, passed, wobble, damping, enough = np.inf, False, 0.0, 1e-2, ENOUGH * near
-    cold, hope = interpolate_cold(curve, margin, max(enough, residual), True), near if masters == 1 else np.inf
+    cold, found = interpolate_cold(curve, margin, max(enough, residual), True)
+    hope = near if masters == 1 else np.inf
     for m in range(rounds):
         hope *= STRIDES[min(m, 2)]
     if cold < np.inf:
@@ -84,11 +83,11 @@ def move_vertices(
     for m in range(rounds + 1):
         if error <= near:
             copy_points(curve, trial)
-            cold = interpolate_cold(trial, margin, residual, False)
+            cold, found = interpolate_cold(trial, margin, residual, False)
             if cold < residual:
                 curve, trial = trial, curve
                 error = measure(samples, curve.b, curve.h, curve.closed, near, (True, rows.span, rows.x), rows)
-        passed = error <= near and cold < residual and has_intervals(curve)
+        passed = error <= near and cold < residual and found
         if passed or m == rounds or error > hope or (m > 1 and masters == 1 and _spans_off(rows, k, near) >= SPANS_OFF):
             break
         hope /= STRIDES[min(m, 2)]

@@ -6,18 +6,19 @@ import math
 
 import numpy as np
 
-from ...arrays import cut, grown
+from ...arrays import cut, grown, put
 from ...compiled import compiled, inlined
 from ...intrinsics import borrowed, keep_alive
 from ...types import BoolArray, FloatArray, IntArray
-from ..method import RELATIVE_TOLERANCE, Rule
+from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX, Polygons
 from ..polygon import SMALLEST as SMALLEST_EXTENT
 from ..found import Found, laid_out
+from ..rule import Rule, rule_of
 from .footpoint import WORK
 from .lemma2 import LEAST, MISSING, ROOM, TOGETHER, arc_interval, set_intervals
-from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, WHOLE, X, one_pass, set_weights
+from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, SUMS, WHOLE, X, clear, one_pass, set_weights
 from .search import SearchedCurve, SearchRoom, settle
 
 OK, BAD_POLYGON, BAD_KNOTS = 0, 1, 2
@@ -33,12 +34,20 @@ or beyond the ends of an arc.
 
 
 @compiled
-def interpolate(k0: int, k1: int, polygons: Polygons, rule: Rule, numbers: FloatArray, whole: IntArray) -> FloatArray:
-    """Interpolate polygons k0 to k1 - 1 into the arrays of :func:`.room_for`; returns their residuals end to end."""
+def interpolate(
+    k0: int, k1: int, points: FloatArray, offsets: IntArray, knots: FloatArray, tangents: FloatArray, held: BoolArray,
+    by_knot: BoolArray, rule_in_numbers: FloatArray, numbers: FloatArray, whole: IntArray,
+) -> FloatArray:  # fmt: skip
+    """Interpolate polygons k0 to k1 - 1 into the arrays of :func:`.room_for`; returns their residuals end to end.
+
+    The fields of :class:`.Polygons` come one by one, the rule as :attr:`.Method.numbers`: Numba would take named tuples
+    apart in the time of four passes over 20 vertices.
+    """
+    polygons = borrowed(Polygons(points, offsets, knots, tangents, held, by_knot))
+    rule = rule_of(borrowed(rule_in_numbers))
     found = laid_out(
-        borrowed(numbers), borrowed(whole), polygons.points.shape[0], polygons.offsets.shape[0] - 1, rule.closed,
-        polygons.points.shape[1],
-    )  # fmt: skip
+        borrowed(numbers), borrowed(whole), points.shape[0], offsets.shape[0] - 1, rule.closed, points.shape[1]
+    )
     prepare(k0, k1, polygons, rule, found)
     return iterate(k0, k1, polygons, rule, found)
 
@@ -50,7 +59,7 @@ def prepare(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> N
     knots, bounds, kept, closed, most = found.knots, found.bounds, found.kept, rule.closed, 0
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
-    room = np.zeros(ROOM + 10 + most + 2 * PAD)
+    room = np.empty(ROOM + 10 + most + 2 * PAD)
     R, rest = cut(borrowed(room), ROOM)
     natural, rest = cut(rest, 2)
     ends, h = cut(rest, 8)
@@ -102,7 +111,7 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
     for k in range(k0, k1):
         most = max(most, offsets[k + 1] - offsets[k])
     size, narrow, count = most + 2 * PAD + WHOLE, min(d, 4), (most + LANES - 1) // LANES
-    line = np.zeros(SCRATCH + 2 + d + 4 * narrow + d * AXIS + size + count * BLOCK)
+    line = np.empty(SCRATCH + 2 + d + 4 * narrow + d * AXIS + size + count * BLOCK)
     tables, corners, work = np.zeros((3, d, size)), np.zeros((2, 4, d)), np.empty(WORK)
     S, rest = cut(borrowed(line), SCRATCH)
     natural, rest = cut(rest, 2)
@@ -113,6 +122,7 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
     p, P, N = borrowed(tables)[0], borrowed(tables)[1], borrowed(tables)[2]
     ends, b = borrowed(corners)[0], borrowed(corners)[1]
     room = SearchRoom(b, c.reshape((narrow, 4)), e, borrowed(work))
+    clear(S[SUMS:], SCRATCH - SUMS, min(most, LANES))
     for k in range(k0, k1):
         first, last, shift, row = offsets[k], offsets[k + 1], k if closed else 0, found.whole[k]
         n = row[KEPT]
@@ -131,7 +141,7 @@ def iterate(k0: int, k1: int, polygons: Polygons, rule: Rule, found: Found) -> F
             fill_edges(P, n, closed, ends, natural)
             largest, now = 0.0, P
             if variant == 4:  # each vertex sees those before it moved
-                copy(P, N)
+                put(P, N)
                 now = N
             for i in range(start, stop, width):
                 part, behind = blocks[(i - start) // LANES * BLOCK + (i - start) % LANES :], min(i + width, stop)
@@ -317,21 +327,13 @@ def fill_edges(P: FloatArray, n: int, closed: bool, ends: FloatArray, natural: F
     """Write the control points before the first vertex and behind the last one, and those of the ends of an arc."""
     for axis in range(P.shape[0]):
         x = P[axis]
-        for k in range(PAD if closed else 0):
-            x[PAD - 1 - k] = x[PAD + (n - 1 - k) % n]
-            x[PAD + n + k] = x[PAD + k % n]
+        for k in range(PAD if closed else 0):  # one after another: fewer than PAD repeat more than once
+            x[PAD - 1 - k] = x[PAD - 1 - k + n]
+            x[PAD + n + k] = x[PAD + k]
         if not closed:
             x[PAD] = ends[0, axis] + natural[0] * x[PAD + 1]
             x[PAD + n - 1] = ends[1, axis] + natural[1] * x[PAD + n - 2]
             x[PAD - 1], x[PAD + n] = ends[2, axis], ends[3, axis]
-
-
-@compiled
-def copy(P: FloatArray, N: FloatArray) -> None:
-    """Copy control points."""
-    for axis in range(P.shape[0]):
-        for i in range(P.shape[1]):
-            N[axis, i] = P[axis, i]
 
 
 @compiled

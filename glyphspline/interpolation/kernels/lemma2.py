@@ -17,7 +17,8 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...intrinsics import chosen
 from ...types import FloatArray, Real
-from ..method import END_MARGIN, Rule
+from ..method import END_MARGIN
+from ..rule import Rule
 
 TOGETHER, ROW = 64, 132
 """Vertices taken together, and the distance of their rows, which have room for two crossings a vertex."""
@@ -113,7 +114,8 @@ def begin(
     # Fixed functions may raise the end of a side again, where W_i is below 1/2.
     y = chosen((square < 0.0) | ((d1 >= 0.0) & (d2 > 0.0)), 1.0, d0 / (d0 - d1 + np.sqrt(square)))
     y = chosen(d0 <= 0.0, 0.0, y)
-    top = value_at(knot, c1, c2, c3, y)
+    x = 1.0 - y
+    top = x * x * (x * knot + 3.0 * y * c1) + y * y * (3.0 * x * c2 + y * c3)
     level = 0.5 + margin
     level = chosen((peak_share > 0.0) & (peak_share * top < level), peak_share * top, level)
     alone, outside, whole = top <= level, knot < level, c3 >= level
@@ -257,13 +259,6 @@ def crossing(begun: Crossing) -> float:
         x, inside, outside, last = halley(k0, k1, k2, k3, inside, outside, x)
         final = 1.0 if last else 0.0
     return x
-
-
-@compiled
-def value_at(c0: Real, c1: Real, c2: Real, c3: Real, x: Real) -> Real:
-    """A cubic in Bernstein form."""
-    y = 1.0 - x
-    return y * y * (y * c0 + 3.0 * x * c1) + x * x * (3.0 * y * c2 + x * c3)
 
 
 @inlined

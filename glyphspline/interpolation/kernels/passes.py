@@ -33,7 +33,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...compiled import compiled
+from ...compiled import compiled, inlined
 from ...types import FloatArray, Real
 
 LANES, STRIDE = 64, 68
@@ -56,6 +56,7 @@ BLOCK = 12 * STRIDE
 C, D, EV, NEAR, FAR, OTHER, Y, DONE, SQUARED, MOVE = (k * STRIDE for k in range(10))
 
 # Rows of scratch for sums over the coordinates from the third on, which bear the names of their factors.
+SUMS = 10 * STRIDE
 QQ, QP, PP, QA, PA_QZ, PZ, AA, AZ, ZZ, VV, EW, EO_VW, VO, WW, WO, OO = (k * STRIDE for k in range(10, 26))
 SCRATCH = 26 * STRIDE
 
@@ -117,13 +118,24 @@ def rises(slope: Real, c0: Real, c1: Real, c2: Real, c3: Real, c4: Real, L: Real
     return first & (start + 0.8 * L * b3 > 0.0) & (start + L * (c0 + k1 + k2 + k3 + k4) > 0.0)
 
 
+@inlined
+def clear(rows: FloatArray, size: int, count: int) -> None:
+    """Write zeros where stages over ``count`` vertices read, in rows of ``size`` numbers together.
+
+    What lies beyond is not touched: of few vertices all scratch fits in the nearest cache, with much else.
+    """
+    width = min(count + WHOLE, STRIDE)
+    for row in range(0, size, STRIDE):
+        for j in range(row, row + width):
+            rows[j] = 0.0
+
+
 @compiled
 def set_weights(h: FloatArray, start: int, stop: int, blocks: FloatArray) -> None:
     """Write the weights of the vertices from ``start`` on to their blocks; h[j] is the interval after knot j."""
-    for k in range(-(-(stop - start) // LANES) * BLOCK):
-        blocks[k] = 0.0
     for first in range(start, stop, LANES):
         row, count = blocks[(first - start) // LANES * BLOCK :], min(LANES, stop - first)
+        clear(row, BLOCK, count)
         for j in range(count + 3):
             i = first - 1 + j
             row[RATE + j] = 3.0 / (h[i - 2] + h[i - 1] + h[i])
@@ -304,7 +316,7 @@ def one_pass(
         P, N, p: (d, …) control points and vertices; P is filled before and behind those that move, which go from
             ``start`` to ``stop``.
         blocks: as :func:`set_weights` makes them, with intervals.
-        S: ``SCRATCH`` numbers, zeros at first; T: ``AXIS`` numbers a coordinate.
+        S: ``SCRATCH`` numbers, zeros in the plane from ``SUMS`` on; T: ``AXIS`` numbers a coordinate.
 
     Returns:
         The largest squared error before the update, and the number of vertices that are left.
