@@ -179,9 +179,9 @@ def spacings(cubics: FloatArray, places: FloatArray, samples: FloatArray, tolera
         spacing[i] = np.inf
         for v in range(masters):
             _, _, dx, dy, ax, ay = jet(cubics[v], j, (places[i] + places[i + 1]) / 2 - j)
-            speed = max(np.hypot(dx, dy), 1e-9)
+            speed = max(length(dx, dy), 1e-9)
             curvature = max(abs(dx * ay - dy * ax) / (speed * speed * speed), 1e-9 / tolerance)
-            wanted = (tolerance / (BEND * (curvature * curvature * curvature))) ** 0.25
+            wanted = np.sqrt(np.sqrt(tolerance / (BEND * (curvature * curvature * curvature))))
             own = length(samples[v, i + 1, 0] - samples[v, i, 0], samples[v, i + 1, 1] - samples[v, i, 1])
             if masters == 1 or own > 0.0:
                 spacing[i] = min(spacing[i], wanted * step / own if masters > 1 else wanted)

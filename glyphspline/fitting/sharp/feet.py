@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...compiled import compiled, inlined
-from ...curves.cubics import jet, length, newton_step
+from ...curves.cubics import length, newton_step
 from ...types import FloatArray, IntArray
-from .spline_curve import SHORT
+from .spline_curve import SHORT, jet_of, tried_in
 
 EXTRA = 6
 """Most points of the curve between two feet that count as rows of their own."""
@@ -71,7 +71,7 @@ def empty_rows(masters: int, samples: int) -> Rows:
 
 @compiled
 def measure(
-    samples: FloatArray, beziers: FloatArray, h: FloatArray, closed: int, near: float,
+    samples: FloatArray, powers: FloatArray, h: FloatArray, closed: int, near: float,
     known: tuple[bool, IntArray, FloatArray], rows: Rows,
 ) -> float:  # fmt: skip
     """Pair the outline with a curve, in order and in every master by itself; the largest distance.
@@ -79,13 +79,13 @@ def measure(
     Each foot is the nearest point after the foot before it, by Newton's method across the spans.
 
     Args:
-        samples: (K, n, 2), see :class:`Samples`. beziers, h, closed: see :class:`.spline_curve.Curve`.
+        samples: (K, n, 2), see :class:`Samples`. powers, h, closed: ``c`` and others of :class:`.spline_curve.Curve`.
         near: the tolerance. known: whether there are first guesses, and spans and parameters of these, (K, n).
         rows: receives the feet and distances.
     """
-    k, n, worst = beziers.shape[1], samples.shape[1], 0.0
+    k, n, worst = powers.shape[1], samples.shape[1], 0.0
     for v in range(len(samples)):
-        Q, b = samples[v], beziers[v]
+        Q, c = samples[v], powers[v]
         span, x, e, nx, ny = rows.span[v], rows.x[v], rows.e[v], rows.nx[v], rows.ny[v]
         for j in range(n):
             s, at = (k - 1, 1.0) if j > 0 else (0, 0.0)
@@ -99,20 +99,20 @@ def measure(
                     at += length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1]) / h[_wrapped(s, k) + 2]
                     at = min(at, 1.0)
                 end = k if not closed else (span[0] + k + 1 if j > 0 else k)
-                span[j], x[j], e[j], nx[j], ny[j] = _foot(b, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
+                span[j], x[j], e[j], nx[j], ny[j] = _foot(c, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
             else:
                 span[j], x[j] = s, at
-                e[j], nx[j], ny[j] = _distance(b, k, s, at, Q[j, 0], Q[j, 1])
+                e[j], nx[j], ny[j] = _distance(c, k, s, at, Q[j, 0], Q[j, 1])
             worst = max(worst, abs(e[j]))
-        worst = max(worst, _add_between(Q, b, h, k, closed, near, v, rows))
+        worst = max(worst, _add_between(Q, c, h, k, closed, near, v, rows))
     if len(samples) > 1:
-        worst = max(worst, _measure_slip(beziers, h, k, rows))
+        worst = max(worst, _measure_slip(powers, h, k, rows))
     return worst
 
 
 @compiled
 def _add_between(
-    Q: FloatArray, b: FloatArray, h: FloatArray, k: int, closed: int, near: float, v: int, rows: Rows
+    Q: FloatArray, c: FloatArray, h: FloatArray, k: int, closed: int, near: float, v: int, rows: Rows
 ) -> float:  # fmt: skip
     """Add rows of master v between the feet of its samples; returns the largest distance of these.
 
@@ -143,7 +143,7 @@ def _add_between(
                 s += 1
                 whole = h[_wrapped(s, k) + 2]
             at = left / whole
-            cx, cy, _, _, _, _ = jet(b, _wrapped(s, k), at)
+            cx, cy, _, _, _, _ = jet_of(c, _wrapped(s, k), at)
             along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / square, 0.0), 1.0)
             ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
             away = length(ex, ey)
@@ -158,7 +158,7 @@ def _add_between(
 
 
 @compiled
-def _measure_slip(b: FloatArray, h: FloatArray, k: int, rows: Rows) -> float:
+def _measure_slip(c: FloatArray, h: FloatArray, k: int, rows: Rows) -> float:
     """How far the feet of a sample are apart along the curve, and the largest distance that this may make in between.
 
     Between the masters, points of the curve are mixed that lie at one parameter. Where the feet are apart and the
@@ -175,7 +175,7 @@ def _measure_slip(b: FloatArray, h: FloatArray, k: int, rows: Rows) -> float:
         for v in range(masters):
             s, x = rows.span[v, j], rows.x[v, j]
             own = _wrapped(s, k)
-            _, _, dx, dy, ax, ay = jet(b[v], own, x)
+            _, _, dx, dy, ax, ay = jet_of(c[v], own, x)
             at[v] = knots[own] + x * h[own + 2] + (s - own) // k * knots[k]
             size = length(dx, dy)
             speed[v] = size / h[own + 2]
@@ -198,7 +198,7 @@ def _measure_slip(b: FloatArray, h: FloatArray, k: int, rows: Rows) -> float:
 
 @compiled
 def _foot(
-    b: FloatArray, k: int, s: int, at: float, s0: int, at0: float, end: int, qx: float, qy: float
+    c: FloatArray, k: int, s: int, at: float, s0: int, at0: float, end: int, qx: float, qy: float
 ) -> tuple[int, float, float, float, float]:
     """The nearest point to (qx, qy) from span s, parameter ``at``; not before (s0, at0), nor from span ``end`` on.
 
@@ -207,7 +207,7 @@ def _foot(
         of the point before it: the distance changes by the square of the step.
     """
     for _ in range(12):
-        cx, cy, dx, dy, ax, ay = jet(b, _wrapped(s, k), at)
+        cx, cy, dx, dy, ax, ay = jet_of(c, _wrapped(s, k), at)
         speed = dx * dx + dy * dy
         if speed <= 0:
             at = min(at + 0.01, 1.0)
@@ -235,14 +235,14 @@ def _foot(
             break
     if s < s0 or (s == s0 and at < at0):
         s, at = s0, at0
-    e, nx, ny = _distance(b, k, s, at, qx, qy)
+    e, nx, ny = _distance(c, k, s, at, qx, qy)
     return s, at, e, nx, ny
 
 
 @inlined
-def _distance(b: FloatArray, k: int, s: int, at: float, qx: float, qy: float) -> tuple[float, float, float]:
+def _distance(c: FloatArray, k: int, s: int, at: float, qx: float, qy: float) -> tuple[float, float, float]:
     """The distance of (qx, qy) from a point of the curve, positive on its left, and the normal there."""
-    cx, cy, dx, dy, _, _ = jet(b, _wrapped(s, k), at)
+    cx, cy, dx, dy, _, _ = jet_of(c, _wrapped(s, k), at)
     ex, ey, speed = qx - cx, qy - cy, max(length(dx, dy), 1e-12)
     nx, ny, away = -dy / speed, dx / speed, length(ex, ey)
     return (away if ex * nx + ey * ny > 0 else -away), nx, ny
@@ -274,16 +274,18 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
 
 @compiled
 def places_beside(
-    samples: FloatArray, known: FloatArray, lap: float, beziers: FloatArray, h: FloatArray, closed: int, near: float
+    samples: FloatArray, known: FloatArray, lap: float, numbers: FloatArray, k: int, closed: int, near: float
 ) -> tuple[float, FloatArray, FloatArray]:  # fmt: skip
     """The largest distance of a curve; the places of the outline beside its knots, from the feet of the samples in the
     first master; and (K, 2, 2) the end tangents of an arc, derivatives by chord length.
 
     Args:
-        samples, beziers, h, near: see :func:`measure`. known, lap: the places of samples, see :class:`Samples`.
+        samples, near: see :func:`measure`. known, lap: the places of samples, see :class:`Samples`.
+        numbers: of the curve of k spans, see :func:`.spline_curve.tried_in`.
     """
-    rows, k, n = empty_rows(len(samples), samples.shape[1]), beziers.shape[1], samples.shape[1]
-    worst = measure(samples, beziers, h, closed, near, (False, rows.span, rows.x), rows)
+    rows, n = empty_rows(len(samples), samples.shape[1]), samples.shape[1]
+    p, tips, powers, h, _ = tried_in(numbers, len(samples), k, closed)
+    worst = measure(samples, powers, h, closed, near, (False, rows.span, rows.x), rows)
     places, feet, own = np.empty(k + 1 - closed), np.empty(n + 1), np.empty(n + 1)
     for j in range(n):
         feet[j], own[j] = rows.span[0, j] + rows.x[0, j], known[j]
@@ -297,10 +299,9 @@ def places_beside(
     if not closed:
         places[k] = own[n - 1]
         for v in range(len(samples)):
-            b = beziers[v]
             for axis in range(2):
-                tangents[v, 0, axis] = 3 * (b[0, 1, axis] - b[0, 0, axis]) / h[2]
-                tangents[v, 1, axis] = 3 * (b[k - 1, 3, axis] - b[k - 1, 2, axis]) / h[k + 1]
+                tangents[v, 0, axis] = 3 * (tips[v, 0, axis] - p[v, 0, axis]) / h[2]
+                tangents[v, 1, axis] = 3 * (p[v, k, axis] - tips[v, 1, axis]) / h[k + 1]
         return worst, places, tangents
     for i in range(1, k):
         if places[i] < places[0]:

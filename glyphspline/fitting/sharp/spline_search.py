@@ -21,9 +21,9 @@ from .cubics import fit_cubic
 from .feet import Samples, places_beside
 from .pieces import Piece
 from .settings import SharpSettings
-from .spline_curve import FREE, tips_of
+from .spline_curve import FREE
 from .vertex_steps import move_vertices
-from .vertices import cheap_removals, insert_vertices, place_vertices, samples_between, without
+from .vertices import cheap_removals, insert_vertices, numbers_with, place_vertices, samples_between, without
 
 PATIENCE = 12
 """Insertions after a first guess from which on all spans that miss the tolerance are cut.
@@ -45,31 +45,20 @@ MOST = 1000
 """Spans of one spline at most: what needs more stays as the source has it."""
 
 
-Vertices: TypeAlias = tuple[FloatArray, FloatArray]
-"""The vertices (K, n, 2) of a curve, and the tips (K, 2, 2) of an arc's end handles."""
+Vertices: TypeAlias = tuple[int, FloatArray]
+"""How many spans a curve has, and its numbers with the vertices set: see :func:`.spline_curve.tried_in`."""
 
 
 class TriedCurve(NamedTuple):
-    """A curve of k spans in K masters; see :func:`.vertex_steps.move_vertices`.
+    """A curve of k spans whose vertices have moved.
 
     Attributes:
-        spans: k. error: the largest distance of a sample.
-        points: (K, n, 2) its vertices. tips: (K, 2, 2) of an arc's end handles.
-        beziers: (K, k, 4, 2). h: the knot intervals. errors: (k,) the largest distance in each span.
+        spans: k. numbers: see :func:`.spline_curve.tried_in`. error: the largest distance of a sample.
     """
 
     spans: int
+    numbers: FloatArray
     error: float
-    points: FloatArray
-    tips: FloatArray
-    beziers: FloatArray
-    h: FloatArray
-    errors: FloatArray
-
-    @property
-    def vertices(self) -> Vertices:
-        """What another curve begins with."""
-        return self.points, self.tips
 
 
 def fit_spline(
@@ -103,8 +92,7 @@ def fit_spline(
     search = Search(samples, closed, near, settings, most)
     first = None
     if begun:
-        points = np.ascontiguousarray(piece.vertices.swapaxes(0, 1))
-        first = points, np.zeros((len(points), 2, 2)) if closed else tips_of(points, piece.tangents)
+        first = k, numbers_with(np.ascontiguousarray(piece.vertices.swapaxes(0, 1)), piece.tangents, k, closed)
     starts = STARTS if given or not alone else 1  # a stretch that none follows is cut in two, and its parts begin anew
     best = first_good(search.curves(first, guess, wanted, starts), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
@@ -120,16 +108,17 @@ class Search:
     """The search for the spline of a stretch.
 
     Attributes:
-        samples: of the stretch. closed: 1 for a closed curve, or else 0. most: spans.
+        samples: of the stretch, in ``masters``. closed: 1 for a closed curve, or else 0. most: spans.
         near: how near all samples have to be. limits: the same, and margin and residual of the interpolation.
-        outline: what is followed. alone: whether it is its only master.
+        outline: what is followed. alone: whether there is one master.
         guessed: numbers of spans that a guess was made with.
     """
 
     def __init__(self, samples: Samples, closed: int, near: float, settings: SharpSettings, most: int) -> None:
         self.samples, self.closed, self.near, self.settings, self.most = samples, closed, near, settings, most
         self.limits = near, settings.margin, settings.residual
-        self.outline, self.alone = (samples.Q, samples.directions, samples.free), len(samples.Q) == 1
+        self.outline, self.masters = (samples.Q, samples.directions, samples.free), len(samples.Q)
+        self.alone = self.masters == 1
         self.guessed = set[int]()
 
     def curves(self, first: Vertices | None, guess: int, wanted: int, starts: int) -> Iterator[TriedCurve]:
@@ -175,7 +164,7 @@ class Search:
                 if i is None:
                     break
                 tried = True
-                curve = self.moved(without(best.vertices, i, self.closed), settings.removal_rounds, i, settings.reach)
+                curve = self.moved(self.with_less(best, i), settings.removal_rounds, i, settings.reach)
                 if curve.error <= self.near:
                     best, cheapest, failed = curve, self.cheapest(curve), 0
                     del left[i]
@@ -196,35 +185,39 @@ class Search:
     def placed(self, k: int) -> Vertices:
         """Vertices of k spans on the outline."""
         self.guessed.add(k)
-        placed: Vertices = place_vertices(self.outline, self.samples.D, k, self.closed)
-        return placed
+        return k, place_vertices(self.outline, self.samples.D, k, self.closed)
 
     def with_more(self, curve: TriedCurve, growth: float) -> Vertices | None:
         """The vertices of a curve, and more in its worst spans; None if these are too many."""
         if curve.spans >= self.most:
             return None
-        more: Vertices = insert_vertices(curve.vertices, curve.beziers, curve.errors, self.near, growth, self.most)
-        return more
+        return insert_vertices(curve.numbers, self.masters, curve.spans, self.closed, self.near, growth, self.most)
+
+    def with_less(self, curve: TriedCurve, i: int) -> Vertices:
+        """The vertices of a curve but for vertex i."""
+        return curve.spans - 1, without(curve.numbers, self.masters, curve.spans, self.closed, i)
 
     def cheapest(self, curve: TriedCurve) -> Iterator[int]:
         """The vertices of a curve that are worth a try to take out."""
-        found = cheap_removals(curve.beziers, curve.h, curve.errors, self.closed, self.settings.dear * self.near)
-        return iter(found.tolist())
+        dear = self.settings.dear * self.near
+        return iter(cheap_removals(curve.numbers, self.masters, curve.spans, self.closed, dear).tolist())
 
     def moved(self, vertices: Vertices, rounds: int, i: int = 0, reach: int | None = None) -> TriedCurve:
         """The curve once its vertices have moved, in ``rounds`` steps at most: up to ``reach`` on either side of vertex
         i, or all."""
-        k = vertices[0].shape[1] - 1 + self.closed
+        k, numbers = vertices
         steps = self.settings.few_rounds if k <= 3 else rounds
         steps = steps if self.alone else 4 * steps // 3  # masters get near later
         reach = k if reach is None else reach
-        return TriedCurve(k, *move_vertices(vertices, self.closed, self.outline, self.limits, steps, i, reach))
+        error = move_vertices(numbers, k, self.closed, self.outline, self.limits, steps, i, reach)
+        return TriedCurve(k, numbers, error)
 
     def piece(self, piece: Piece, curve: TriedCurve) -> Piece:
         """The curve in the place of a piece."""
-        samples = self.samples
+        samples, k, closed = self.samples, curve.spans, self.closed
         error, places, tangents = places_beside(
-            samples.Q, samples.places, samples.lap, curve.beziers, curve.h, self.closed, self.near
+            samples.Q, samples.places, samples.lap, curve.numbers, k, closed, self.near
         )
-        contour, joints, closed = piece.contour, piece.joints, self.closed
-        return Piece(contour, joints, curve.spans, closed, curve.points.swapaxes(0, 1), places, tangents, error)
+        n = k + 1 - closed
+        points = curve.numbers[: 2 * self.masters * n].reshape(self.masters, n, 2)
+        return Piece(piece.contour, piece.joints, k, closed, points.swapaxes(0, 1), places, tangents, error)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...arrays import put
 from ...compiled import compiled
 from ...curves.cubics import length
 from ...intrinsics import borrowed, keep_alive
@@ -24,8 +25,8 @@ from .spline_curve import (
     hold_tied,
     interpolate_cold,
     iterate,
-    result_of,
     set_knots,
+    tried_in,
 )
 from .spline_equations import add_rows, differentiate, knots_per_step, objective, solve_step, system_of
 
@@ -46,24 +47,23 @@ distances from span to span. It saves a seventh of all steps. Fits of masters ge
 
 @compiled
 def move_vertices(
-    vertices: tuple[FloatArray, FloatArray], closed: int, outline: tuple[FloatArray, FloatArray, IntArray],
+    numbers: FloatArray, k: int, closed: int, outline: tuple[FloatArray, FloatArray, IntArray],
     limits: tuple[float, float, float], rounds: int, i: int, reach: int,
-) -> tuple[float, FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+) -> float:  # fmt: skip
     """Move the vertices up to ``reach`` on either side of vertex i until all rows are near enough on a cold run.
 
     Args:
-        vertices: (K, n, 2) of the curve, and (K, 2, 2) the tips of an arc's end handles.
+        numbers: of a curve with vertices, see :func:`.spline_curve.tried_in`; receives the curve as it is then.
         outline: ``Q``, ``directions`` and ``free`` of :class:`.feet.Samples`.
         limits: how near the samples have to be; margin and residual of the interpolation. rounds: most steps.
 
     Returns:
         The largest distance of a cold run that passed; else the least one seen, of a warm run, and more than the limit:
-        infinite if variant 2 finds no curve. Then of that curve the vertices and tips, the Bézier points (K, k, 4, 2),
-        the knot intervals as :class:`.spline_curve.Curve` has them, and (k,) the largest distance in each span.
+        infinite if variant 2 finds no curve.
     """
     (samples, directions, free), (near, margin, residual) = outline, limits
-    (p, tips), masters, n = vertices, samples.shape[0], samples.shape[1]
-    k = p.shape[1] - 1 + closed
+    masters, n = samples.shape[0], samples.shape[1]
+    p, tips, powers, h, errors = tried_in(numbers, masters, k, closed)
     owned = (
         curve_of(p, tips, closed), curve_of(p, tips, closed), empty_rows(masters, n), empty_rows(masters, n),
         system_of(masters, k, closed, i, reach),
@@ -76,7 +76,7 @@ def move_vertices(
     for m in range(rounds):
         hope *= STRIDES[min(m, 2)]
     if cold < np.inf:
-        error = measure(samples, curve.b, curve.h, curve.closed, near, (False, rows.span, rows.x), rows)
+        error = measure(samples, curve.c, curve.h, curve.closed, near, (False, rows.span, rows.x), rows)
         wobble = _wobble_weight(curve.h, k)
     else:
         rounds = -1
@@ -86,7 +86,7 @@ def move_vertices(
             cold, found = interpolate_cold(trial, margin, residual, False)
             if cold < residual:
                 curve, trial = trial, curve
-                error = measure(samples, curve.b, curve.h, curve.closed, near, (True, rows.span, rows.x), rows)
+                error = measure(samples, curve.c, curve.h, curve.closed, near, (True, rows.span, rows.x), rows)
         passed = error <= near and cold < residual and found
         if passed or m == rounds or error > hope or (m > 1 and masters == 1 and _spans_off(rows, k, near) >= SPANS_OFF):
             break
@@ -101,7 +101,7 @@ def move_vertices(
             if _advance(curve, trial, system.frames, system.moves, system.step, system.place, share):
                 hold_tied(trial, directions, free)
                 iterate(trial, enough, 12, True)
-                new = measure(samples, trial.b, trial.h, trial.closed, near, (True, rows.span, rows.x), tried)
+                new = measure(samples, trial.c, trial.h, trial.closed, near, (True, rows.span, rows.x), tried)
                 if objective(trial, tried, error, minimax, wobble) < old:
                     break
             failures += 1
@@ -112,10 +112,15 @@ def move_vertices(
         curve, trial, rows, tried, error = trial, curve, tried, rows, new
     if not passed:
         error = max(error, np.nextafter(near, np.inf))
-    p, tips, beziers, h = result_of(curve)
-    errors = span_errors(rows, k)
+    put(curve.p, p)
+    put(curve.c, powers)
+    put(curve.h, h)
+    put(span_errors(rows, k), errors)
+    for v in range(0 if closed else masters):
+        for axis in range(2):
+            tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
     keep_alive(owned)
-    return error, p, tips, beziers, h, errors
+    return error
 
 
 @compiled

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...arrays import put
 from ...compiled import compiled
-from ...curves.cubics import jet, length
+from ...curves.cubics import length
 from ...types import FloatArray, IntArray
 from .corners import JointArrays, Joints
 from .feet import Samples
-from .spline_curve import FREE, HELD, SHORTEST_HANDLE, TIED, chord, tips_of
-from .spline_equations import third_along
+from .spline_curve import FREE, HELD, SHORTEST_HANDLE, TIED, chord, jet_of, numbers_for, set_tips, tried_in
 
 GROWTH = 1.35
 """How fast the wanted distance of vertices grows along the outline: by exp(1.35) < 4 from one to the next."""
@@ -46,17 +46,16 @@ def samples_between(around: JointArrays, i: int, j: int, closed: int) -> Samples
 
 
 @compiled
-def place_vertices(
-    outline: tuple[FloatArray, FloatArray, IntArray], D: FloatArray, k: int, closed: int
-) -> tuple[FloatArray, FloatArray]:
-    """Vertices (K, n, 2) of k spans on the outline, as the density has them, and tips (K, 2, 2) of an arc's handles.
+def place_vertices(outline: tuple[FloatArray, FloatArray, IntArray], D: FloatArray, k: int, closed: int) -> FloatArray:
+    """The numbers of a curve with vertices of k spans on the outline, as the density has them.
 
     Args:
         outline: ``Q``, ``directions`` and ``free`` of :class:`.feet.Samples`.
     """
     Q, directions, free = outline
-    masters, n = Q.shape[0], Q.shape[1]
-    p, j = np.empty((masters, k + 1 - closed, 2)), 0
+    masters, n, j = Q.shape[0], Q.shape[1], 0
+    numbers = numbers_for(masters, k, closed)
+    p, tips, _, _, _ = tried_in(numbers, masters, k, closed)
     for i in range(k + 1 - closed):
         goal = D[len(D) - 1] * i / k
         while j + 2 < len(D) and D[j + 1] <= goal:
@@ -67,7 +66,7 @@ def place_vertices(
             for axis in range(2):
                 p[v, i, axis] = Q[v, j, axis] + share * (Q[v, after, axis] - Q[v, j, axis])
     if closed:
-        return p, np.zeros((masters, 2, 2))
+        return numbers
     for v in range(masters):
         p[v, k, 0], p[v, k, 1] = Q[v, n - 1, 0], Q[v, n - 1, 1]
     tangents = directions.copy()
@@ -79,25 +78,33 @@ def place_vertices(
                 own = length(p[v, i + 1, 0] - p[v, i, 0], p[v, i + 1, 1] - p[v, i, 1])
                 for axis in range(2):
                     tangents[v, end, axis] *= max(own / whole, SHORTEST_HANDLE)
-    return p, tips_of(p, tangents)
+    set_tips(p, tangents, tips)
+    return numbers
+
+
+@compiled
+def numbers_with(p: FloatArray, tangents: FloatArray, k: int, closed: int) -> FloatArray:
+    """The numbers of a curve of k spans with vertices (K, n, 2), and end tangents (K, 2, 2) by chord length."""
+    numbers = numbers_for(len(p), k, closed)
+    own, tips, _, _, _ = tried_in(numbers, len(p), k, closed)
+    put(p, own)
+    if not closed:
+        set_tips(p, tangents, tips)
+    return numbers
 
 
 @compiled
 def insert_vertices(
-    vertices: tuple[FloatArray, FloatArray], beziers: FloatArray, errors: FloatArray, near: float, growth: float,
-    most: int,
-) -> tuple[FloatArray, FloatArray]:  # fmt: skip
-    """Vertices and tips with the worst spans cut in two, no two adjacent ones.
+    numbers: FloatArray, masters: int, k: int, closed: int, near: float, growth: float, most: int
+) -> tuple[int, FloatArray]:
+    """A curve with the worst spans cut in two, no two adjacent ones: its number of spans, and its numbers.
 
     Args:
-        vertices: of a curve, and tips; they and the others are as :func:`.vertex_steps.move_vertices` returns them.
+        numbers: of a curve whose vertices have moved, of k spans in K masters, see :func:`.spline_curve.tried_in`.
         growth: power of a span's error with which vertices are added; with infinity all that miss the tolerance are.
         most: spans then, at most.
-
     """
-    p, tips = vertices
-    masters, slots, k = p.shape[0], p.shape[1], len(errors)
-    closed = k + 1 - slots
+    p, tips, powers, _, errors = tried_in(numbers, masters, k, closed)
     wanted = 0.0
     for s in range(k):
         if errors[s] > near:
@@ -115,65 +122,66 @@ def insert_vertices(
             break
         cut[worst] = True
         added += 1
-    more, at = np.empty((masters, slots + added, 2)), 0
-    for s in range(slots):
+    found, at = numbers_for(masters, k + added, closed), 0
+    more, new_tips, _, _, _ = tried_in(found, masters, k + added, closed)
+    for s in range(k + 1 - closed):
         for v in range(masters):
             more[v, at, 0], more[v, at, 1] = p[v, s, 0], p[v, s, 1]
         at += 1
         if s < k and cut[s]:
             for v in range(masters):
-                more[v, at, 0], more[v, at, 1], _, _, _, _ = jet(beziers[v], s, 0.5)
+                more[v, at, 0], more[v, at, 1], _, _, _, _ = jet_of(powers[v], s, 0.5)
             at += 1
-    return more, tips if closed else shortened(p, tips, more)
+    set_shorter(p, tips, closed, more, new_tips)
+    return k + added, found
 
 
 @compiled
-def without(vertices: tuple[FloatArray, FloatArray], i: int, closed: int) -> tuple[FloatArray, FloatArray]:
-    """Vertices and tips without vertex i."""
-    p, tips = vertices
-    masters, n = p.shape[0], p.shape[1] - 1
-    fewer = np.empty((masters, n, 2))
+def without(numbers: FloatArray, masters: int, k: int, closed: int, i: int) -> FloatArray:
+    """The numbers of a curve without vertex i."""
+    p, tips, _, _, _ = tried_in(numbers, masters, k, closed)
+    found = numbers_for(masters, k - 1, closed)
+    fewer, new_tips, _, _, _ = tried_in(found, masters, k - 1, closed)
     for v in range(masters):
-        for j in range(n):
+        for j in range(k - closed):
             for axis in range(2):
                 fewer[v, j, axis] = p[v, j if j < i else j + 1, axis]
-    return fewer, tips if closed else shortened(p, tips, fewer)
+    set_shorter(p, tips, closed, fewer, new_tips)
+    return found
 
 
 @compiled
-def shortened(old: FloatArray, tips: FloatArray, p: FloatArray) -> FloatArray:
-    """The tips of an arc's handles for other vertices between its ends: at most half as long as their chord."""
-    found = np.empty((len(p), 2, 2))
-    for v in range(len(p)):
+def set_shorter(old: FloatArray, tips: FloatArray, closed: int, p: FloatArray, found: FloatArray) -> None:
+    """Write the tips of an arc's handles for other vertices between its ends: at most half as long as their chord."""
+    for v in range(0 if closed else len(p)):
         for end, at, beside in ((0, 0, 1), (1, p.shape[1] - 1, p.shape[1] - 2)):
             before = end * (old.shape[1] - 1)
             x, y = tips[v, end, 0] - old[v, before, 0], tips[v, end, 1] - old[v, before, 1]
             size, own = length(x, y), length(p[v, beside, 0] - p[v, at, 0], p[v, beside, 1] - p[v, at, 1])
             share = min(1.0, 0.5 * own / size) if size > 0 else 1.0
             found[v, end, 0], found[v, end, 1] = old[v, before, 0] + share * x, old[v, before, 1] + share * y
-    return found
 
 
 @compiled
-def cheap_removals(beziers: FloatArray, h: FloatArray, errors: FloatArray, closed: int, dear: float) -> IntArray:
+def cheap_removals(numbers: FloatArray, masters: int, k: int, closed: int, dear: float) -> IntArray:
     """The vertices of a curve that passed, but an arc's ends, whose removal is estimated to cost up to ``dear``, the
     cheapest first.
 
     The estimate is the jump of the third derivative at the knot, and the error.
     """
-    k, count = len(errors), 0
+    (_, _, powers, h, errors), count = tried_in(numbers, masters, k, closed), 0
     costs, found = np.empty(k), np.empty(k, dtype=np.int64)
     for i in range(1 - closed, k):
         last, cost = i - 1 if i > 0 else k - 1, 0.0
         before, after = h[i + 1], h[i + 2]
         reach = before * after / (before + after)
-        for v in range(len(beziers)):
-            b = beziers[v]
-            _, _, dx, dy, _, _ = jet(b, i, 0.0)
+        for v in range(masters):
+            c = powers[v]
+            dx, dy = c[i, 1, 0], c[i, 1, 1]
             speed = max(length(dx, dy), 1e-12)
             nx, ny = -dy / speed, dx / speed
-            jump = third_along(b, i, nx, ny) / (after * after * after)
-            jump -= third_along(b, last, nx, ny) / (before * before * before)
+            jump = 6 * (c[i, 3, 0] * nx + c[i, 3, 1] * ny) / (after * after * after)
+            jump -= 6 * (c[last, 3, 0] * nx + c[last, 3, 1] * ny) / (before * before * before)
             cost = max(cost, abs(jump) * (reach * reach * reach) / 6 + max(errors[last], errors[i]) / 4)
         if not cost <= dear:
             continue
