@@ -113,20 +113,6 @@ def section(cubic: FloatArray, x0: float, x1: float, out: FloatArray) -> None:
 
 
 @compiled
-def hidden_extrema(cubic: FloatArray) -> int:
-    """The number of horizontal and vertical extrema inside a cubic (4, 2), between its ends."""
-    count = 0
-    for axis in range(2):
-        # The derivative's Bernstein coefficients, but for a factor.
-        a, b, c = cubic[1, axis] - cubic[0, axis], cubic[2, axis] - cubic[1, axis], cubic[3, axis] - cubic[2, axis]
-        if a * c < 0.0:
-            count += 1
-        elif b * (a + c) < 0.0 and b * b > a * c:
-            count += 1 if a * c == 0.0 else 2
-    return count
-
-
-@compiled
 def extent(cubics: FloatArray) -> float:
     """The largest coordinate of (m, 4, 2) Bézier points."""
     most = 0.0

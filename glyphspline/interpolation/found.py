@@ -1,4 +1,4 @@
-"""What the compiled driver writes of many polygons."""
+"""What the compiled driver reads of a method, and writes of many polygons."""
 
 from __future__ import annotations
 
@@ -8,6 +8,30 @@ import numpy as np
 
 from ..compiled import inlined
 from ..types import FloatArray, IntArray
+
+
+class Rule(NamedTuple):
+    """What compiled functions read of a :class:`.Method`.
+
+    Attributes:
+        exponent: of the chord length in the knots, or ``method.GIVEN``.
+        tolerance: of residuals; NaN: the one of ``method.RELATIVE_TOLERANCE``.
+        peak_share: ``method.PEAK_SHARE`` with ``fallback="peak"``, else 0.
+    """
+
+    closed: bool
+    variant: int
+    margin: float
+    exponent: float
+    tolerance: float
+    peak_share: float
+    max_iterations: int
+
+
+@inlined
+def rule_of(numbers: FloatArray) -> Rule:
+    """The rule that is in :attr:`.Method.numbers`."""
+    return Rule(numbers[0] > 0.0, int(numbers[1]), numbers[2], numbers[3], numbers[4], numbers[5], int(numbers[6]))
 
 
 class Found(NamedTuple):

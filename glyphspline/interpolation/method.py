@@ -100,13 +100,14 @@ class Method:
 
     @cached_property
     def numbers(self) -> FloatArray:
-        """(7,) what :func:`.rule.rule_of` reads."""
-        from .rule import Rule, in_numbers  # with NumPy, which a command that checks its options does not need
+        """(7,) what :func:`.found.rule_of` reads: an array is handed over in less time than a named tuple."""
+        import numpy as np  # which a command that checks its options does not need
 
         exponent = GIVEN if self.knots is None else CHORD_EXPONENT[self.knots]
         tolerance = nan if self.residual_tolerance is None else self.residual_tolerance
-        return in_numbers(
-            Rule(self.closed, self.variant, self.margin, exponent, tolerance, self.peak_share, self.max_iterations)
+        return np.array(
+            (self.closed, self.variant, self.margin, exponent, tolerance, self.peak_share, self.max_iterations),
+            dtype=np.float64,
         )
 
     def tolerance_for(self, extent: float) -> float:

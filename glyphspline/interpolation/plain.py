@@ -14,7 +14,7 @@ import numpy as np
 
 from ..compiled import in_numpy
 from ..types import BoolArray, FloatArray, IntArray
-from .found import Found, laid_out
+from .found import Found, Rule, laid_out, rule_of
 from .kernels import driver
 from .kernels.driver import (
     BAD_KNOTS,
@@ -49,7 +49,6 @@ from .kernels.passes import (
 from .kernels.search import FINE, GIVEN_UP, SearchedCurve, SearchRoom, look_again
 from .method import RELATIVE_TOLERANCE
 from .polygon import LARGEST, SAME_VERTEX, SMALLEST, Polygons
-from .rule import Rule, rule_of
 
 where: Any = np.where  # its types have another result for what may be None
 

@@ -22,8 +22,8 @@ import numpy as np
 
 import glyphspline as gs
 from glyphspline.curves.bezier import as_cubic
-from glyphspline.curves.cubics import hidden_extrema
 from glyphspline.plugins.experiments.measures import curvature_variation
+from glyphspline.plugins.fonts.extrema import hidden_extrema
 from glyphspline.types import FloatArray
 
 from ..survey import distances, faces, sampled

@@ -8,7 +8,7 @@ import pytest
 import glyphspline as gs
 from glyphspline.compiled import compiled
 from glyphspline.curves.bezier import evaluate, split
-from glyphspline.curves.cubics import bernstein, hidden_extrema, length_table, section, turns
+from glyphspline.curves.cubics import bernstein, length_table, section, turns
 from glyphspline.curves.cubics import split as cut
 from glyphspline.curves.nearest import near_place, search_place
 from glyphspline.curves.spline_beziers import spline_beziers
@@ -83,17 +83,6 @@ def test_lengths_add_up_to_the_circumference() -> None:
     assert len(table) == 4 * 64 + 1
     assert table[-1] == pytest.approx(200 * np.pi, rel=1e-3)
     assert (np.diff(table) > 0).all()
-
-
-def test_hidden_extrema_are_the_derivatives_changes_of_sign_between_the_ends() -> None:
-    rng = np.random.default_rng(5)
-    for points in rng.integers(-4, 5, (500, 4, 2)).astype(float):
-        expected = 0
-        for a, b, c in np.diff(points, axis=0).T:
-            roots = np.roots([a - 2 * b + c, 2 * (b - a), a])
-            inside = roots[(np.abs(roots.imag) < 1e-9) & (roots.real > 1e-9) & (roots.real < 1 - 1e-9)].real
-            expected += len(inside) if len(inside) < 2 or np.ptp(inside) > 1e-6 else 0
-        assert hidden_extrema(points) == expected, points
 
 
 def test_inside_a_corner_the_same_side_is_the_nearest_wherever_it_lies() -> None:

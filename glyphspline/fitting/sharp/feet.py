@@ -259,9 +259,11 @@ def _wrapped(s: int, k: int) -> int:
 
 
 @compiled
-def span_errors(rows: Rows, k: int) -> FloatArray:
-    """(k,) the largest distance in each span."""
-    errors = np.zeros(k)
+def set_errors(rows: Rows, limit: float, errors: FloatArray) -> int:
+    """Write the largest distance in each span; returns the number of those beyond a limit."""
+    k, beyond = len(errors), 0
+    for s in range(k):
+        errors[s] = 0.0
     for v in range(len(rows.used)):
         for r in range(rows.used[v, 0]):
             s = _wrapped(rows.span[v, r], k)
@@ -269,7 +271,9 @@ def span_errors(rows: Rows, k: int) -> FloatArray:
             if r < rows.slip.shape[1]:
                 error += rows.lever[v, r] * abs(rows.slip[v, r])
             errors[s] = max(errors[s], error)
-    return errors
+    for s in range(k):
+        beyond += 1 if errors[s] > limit else 0
+    return beyond
 
 
 @compiled

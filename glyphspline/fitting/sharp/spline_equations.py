@@ -189,16 +189,8 @@ def add_rows(
                 _add_row(gram[s], J, moves[s], B, ny[r], -nx[r], slip[r], weight)
         B[0], B[1], B[2], B[3] = -6.0, 18.0, -18.0, 6.0
         for s in range(k):
-            x, y = middle_normal(b[s])
-            wanted = -third_along(b, s, x, y)
-            _add_row(gram[s], J, moves[s], B, x, y, wanted, wobble / fifth_power(h[s + 2]))
-
-
-@inlined
-def fifth_power(x: float) -> float:
-    """The product that compiled code makes of ``x ** 5``; Python asks the C library."""
-    square = x * x
-    return x * (square * square)
+            x, y, third, fifth = bending(b[s], h[s + 2])
+            _add_row(gram[s], J, moves[s], B, x, y, -third, wobble / fifth)
 
 
 @inlined
@@ -234,27 +226,21 @@ def objective(curve: Curve, rows: Rows, scale: float, minimax: bool, wobble: flo
     for v in range(len(curve.b)):
         b = curve.b[v]
         for s in range(curve.k):
-            nx, ny = middle_normal(b[s])
-            third = third_along(b, s, nx, ny)
-            thirds += third * third / fifth_power(curve.h[s + 2])
+            _, _, third, fifth = bending(b[s], curve.h[s + 2])
+            thirds += third * third / fifth
     return total + wobble * thirds
 
 
 @inlined
-def third_along(b: FloatArray, s: int, nx: float, ny: float) -> float:
-    """The third derivative of span s by its local parameter, along (nx, ny)."""
-    x = b[s, 3, 0] - b[s, 0, 0] - 3 * (b[s, 2, 0] - b[s, 1, 0])
-    y = b[s, 3, 1] - b[s, 0, 1] - 3 * (b[s, 2, 1] - b[s, 1, 1])
-    return 6 * (x * nx + y * ny)
-
-
-@inlined
-def middle_normal(b: FloatArray) -> tuple[float, float]:
-    """The unit normal of a cubic (4, 2) at its middle."""
-    dx = b[3, 0] - b[0, 0] + b[2, 0] - b[1, 0]
-    dy = b[3, 1] - b[0, 1] + b[2, 1] - b[1, 1]
+def bending(b: FloatArray, h: float) -> tuple[float, float, float, float]:
+    """Of a cubic (4, 2): the unit normal at its middle, the third derivative by its own parameter along that, and the
+    fifth power of the knot interval: the product that compiled code makes of ``h ** 5``; Python asks the C library.
+    """
+    dx, dy = b[3, 0] - b[0, 0] + b[2, 0] - b[1, 0], b[3, 1] - b[0, 1] + b[2, 1] - b[1, 1]
     size = max(length(dx, dy), 1e-12)
-    return -dy / size, dx / size
+    nx, ny = -dy / size, dx / size
+    x, y = b[3, 0] - b[0, 0] - 3 * (b[2, 0] - b[1, 0]), b[3, 1] - b[0, 1] - 3 * (b[2, 1] - b[1, 1])
+    return nx, ny, 6 * (x * nx + y * ny), h * (h * h * (h * h))
 
 
 @compiled

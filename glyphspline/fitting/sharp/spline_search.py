@@ -11,8 +11,6 @@ from collections.abc import Iterator
 from math import inf
 from typing import NamedTuple, TypeAlias
 
-import numpy as np
-
 from ...types import FloatArray
 from ..first_good import first_good
 from ..ladders import STARTS
@@ -21,9 +19,9 @@ from .cubics import fit_cubic
 from .feet import Samples, places_beside
 from .pieces import Piece
 from .settings import SharpSettings
-from .spline_curve import FREE
+from .spline_curve import FREE, numbers_for, set_tips, tried_in
 from .vertex_steps import move_vertices
-from .vertices import cheap_removals, insert_vertices, numbers_with, place_vertices, samples_between, without
+from .vertices import cheap_removals, insert_vertices, place_vertices, samples_between, without
 
 PATIENCE = 12
 """Insertions after a first guess from which on all spans that miss the tolerance are cut.
@@ -86,22 +84,29 @@ def fit_spline(
     # A cubic that misses the tolerance by less than this factor is followed by a try with two spans: this saves 483
     # segments with "fast"; without a limit 289 more, for 1.4 times the time.
     guess = most if limited else 2 if not closed and missed < 30.0 * near else max(least, wanted)
-    none = piece._replace(error=inf)
     if max(guess, least, begun) > most:
-        return none
+        return piece._replace(error=inf)
     search = Search(samples, closed, near, settings, most)
-    first = None
-    if begun:
-        first = k, numbers_with(np.ascontiguousarray(piece.vertices.swapaxes(0, 1)), piece.tangents, k, closed)
+    first = vertices_of(piece) if begun else None
     starts = STARTS if given or not alone else 1  # a stretch that none follows is cut in two, and its parts begin anew
     best = first_good(search.curves(first, guess, wanted, starts), lambda curve: (int(not curve.error <= near),))
     if not best.error <= near:
-        return none
+        return piece._replace(error=inf)
     found = search.piece(piece, search.thinned(best, max(least, begun)) if best.spans > begun else best)
     if begun and found.spans > begun:  # more were put between old ones than a new guess may take
         other = fit_spline(joints, piece, near, settings, given=False)
         return other if other.error <= near and other.spans < found.spans else found
     return found
+
+
+def vertices_of(piece: Piece) -> Vertices:
+    """The vertices and end handles of a piece that is an arc or a closed curve."""
+    numbers = numbers_for(piece.vertices.shape[1], piece.spans, piece.closed)
+    p, tips, _, _, _ = tried_in(numbers, piece.vertices.shape[1], piece.spans, piece.closed)
+    p[:] = piece.vertices.swapaxes(0, 1)
+    if not piece.closed:
+        set_tips(p, piece.tangents, tips)
+    return piece.spans, numbers
 
 
 class Search:
@@ -218,6 +223,5 @@ class Search:
         error, places, tangents = places_beside(
             samples.Q, samples.places, samples.lap, curve.numbers, k, closed, self.near
         )
-        n = k + 1 - closed
-        points = curve.numbers[: 2 * self.masters * n].reshape(self.masters, n, 2)
-        return Piece(piece.contour, piece.joints, k, closed, points.swapaxes(0, 1), places, tangents, error)
+        points = tried_in(curve.numbers, self.masters, k, closed).p.swapaxes(0, 1)
+        return Piece(piece.contour, piece.joints, k, closed, points, places, tangents, error)

@@ -15,7 +15,7 @@ from ...curves.cubics import length
 from ...intrinsics import borrowed, keep_alive
 from ...types import FloatArray, IntArray
 from .cubics import limited
-from .feet import Rows, empty_rows, measure, span_errors
+from .feet import empty_rows, measure, set_errors
 from .spline_curve import (
     LONGEST_HANDLE,
     SHORTEST_HANDLE,
@@ -88,7 +88,8 @@ def move_vertices(
                 curve, trial = trial, curve
                 error = measure(samples, curve.c, curve.h, curve.closed, near, (True, rows.span, rows.x), rows)
         passed = error <= near and cold < residual and found
-        if passed or m == rounds or error > hope or (m > 1 and masters == 1 and _spans_off(rows, k, near) >= SPANS_OFF):
+        far = m > 1 and masters == 1 and set_errors(rows, OFF * near, errors) >= SPANS_OFF
+        if passed or m == rounds or error > hope or far:
             break
         hope /= STRIDES[min(m, 2)]
         minimax, failures, new = m >= 2, 0, np.inf
@@ -115,21 +116,12 @@ def move_vertices(
     put(curve.p, p)
     put(curve.c, powers)
     put(curve.h, h)
-    put(span_errors(rows, k), errors)
+    set_errors(rows, near, errors)
     for v in range(0 if closed else masters):
         for axis in range(2):
             tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
     keep_alive(owned)
     return error
-
-
-@compiled
-def _spans_off(rows: Rows, k: int, near: float) -> int:
-    """How many spans are off by more than ``OFF`` tolerances."""
-    off = 0
-    for own in span_errors(rows, k):
-        off += 1 if own > OFF * near else 0
-    return off
 
 
 @compiled

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...arrays import put
 from ...compiled import compiled
 from ...curves.cubics import length
 from ...types import FloatArray, IntArray
@@ -79,17 +78,6 @@ def place_vertices(outline: tuple[FloatArray, FloatArray, IntArray], D: FloatArr
                 for axis in range(2):
                     tangents[v, end, axis] *= max(own / whole, SHORTEST_HANDLE)
     set_tips(p, tangents, tips)
-    return numbers
-
-
-@compiled
-def numbers_with(p: FloatArray, tangents: FloatArray, k: int, closed: int) -> FloatArray:
-    """The numbers of a curve of k spans with vertices (K, n, 2), and end tangents (K, 2, 2) by chord length."""
-    numbers = numbers_for(len(p), k, closed)
-    own, tips, _, _, _ = tried_in(numbers, len(p), k, closed)
-    put(p, own)
-    if not closed:
-        set_tips(p, tangents, tips)
     return numbers
 
 

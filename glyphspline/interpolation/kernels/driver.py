@@ -14,8 +14,7 @@ from ..method import RELATIVE_TOLERANCE
 from ..polygon import LARGEST as LARGEST_EXTENT
 from ..polygon import SAME_VERTEX, Polygons
 from ..polygon import SMALLEST as SMALLEST_EXTENT
-from ..found import Found, laid_out
-from ..rule import Rule, rule_of
+from ..found import Found, Rule, laid_out, rule_of
 from .footpoint import WORK
 from .lemma2 import LEAST, MISSING, ROOM, TOGETHER, arc_interval, set_intervals
 from .passes import AXIS, BLOCK, FREE, HIGH, LANES, LOW, SCRATCH, SUMS, WHOLE, X, clear, one_pass, set_weights

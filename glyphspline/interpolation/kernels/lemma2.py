@@ -18,7 +18,7 @@ from ...compiled import compiled, inlined
 from ...intrinsics import chosen
 from ...types import FloatArray, Real
 from ..method import END_MARGIN
-from ..rule import Rule
+from ..found import Rule
 
 TOGETHER, ROW = 64, 132
 """Vertices taken together, and the distance of their rows, which have room for two crossings a vertex."""

@@ -21,12 +21,12 @@ from fontTools.ufoLib import UFOWriter
 
 from ...errors import OutputError
 from ...fitting.results import ContourResult, GlyphResult
-from ...outlines.extrema import with_extrema
 from ...outlines.open_paths import there_and_back
 from ...outlines.outline import Contour
 from ...readers import Source
 from ...writers.json_file import finite
 from .back.nodes import as_number, nodes_of, smooth_ends
+from .extrema import with_extrema
 
 LIB_KEY = "org.glyphspline.contours"
 OPTIONS_KEY = "org.glyphspline.options"

@@ -12,9 +12,9 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
-from glyphspline.outlines.extrema import with_extrema
 from glyphspline.plugins.fonts.back.glif import Glif
 from glyphspline.plugins.fonts.back.nodes import Node, replaced
+from glyphspline.plugins.fonts.extrema import with_extrema
 from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.plugins.masters.job import convert_font_masters
 from glyphspline.readers import open_source

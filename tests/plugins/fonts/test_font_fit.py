@@ -12,7 +12,7 @@ from fontTools.ttLib import TTFont
 from scipy.spatial import cKDTree
 
 import glyphspline as gs
-from glyphspline.curves.cubics import hidden_extrema, turns
+from glyphspline.curves.cubics import turns
 from glyphspline.fitting.sharp.corners import find_joints
 from glyphspline.fitting.sharp.settings import EFFORTS
 from glyphspline.outlines.contour_arrays import ContourArrays
@@ -20,6 +20,7 @@ from glyphspline.outlines.flaws.joints import WHAT
 from glyphspline.outlines.flaws.kinds import KINK
 from glyphspline.outlines.outline import Contours
 from glyphspline.outlines.segments import all_cubics
+from glyphspline.plugins.fonts.extrema import hidden_extrema
 from glyphspline.plugins.fonts.fit.fit import ONE, TURNING, findings
 from glyphspline.plugins.fonts.fit.gates import misses
 from glyphspline.plugins.fonts.fit.harmony import end_jump, harmonise

@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline
 
 import glyphspline as gs
 from glyphspline.errors import GlyphsplineError
-from glyphspline.outlines.extrema import with_extrema
+from glyphspline.plugins.fonts.extrema import with_extrema
 from glyphspline.plugins.fonts.ufo_folder import BACKGROUND, LIB_KEY, write_ufo
 from glyphspline.readers import open_font
 from glyphspline.readers.ufo import Ufo

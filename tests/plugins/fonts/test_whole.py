@@ -13,8 +13,8 @@ import pytest
 import glyphspline as gs
 from glyphspline.errors import OutputError
 from glyphspline.fitting.options import Options
-from glyphspline.outlines.extrema import with_extrema
 from glyphspline.plugins.drawings.svg import SvgDrawings
+from glyphspline.plugins.fonts.extrema import with_extrema
 from glyphspline.plugins.fonts.spec import RefitSpec
 from glyphspline.readers import open_font
 from glyphspline.readers.ufo import Ufo

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ....compiled import compiled
-from ....curves.cubics import directions, hidden_extrema, length
+from ....curves.cubics import directions, length
 from ....fitting.sharp.corners import NO_HANDLE, turn_between
 from ....types import BoolArray, FloatArray, IntArray
+from ..extrema import hidden_extrema
 from .harmony import end_jump
 from .nearness import certified
 

@@ -16,9 +16,10 @@ import numpy as np
 
 from ....arrays import put
 from ....compiled import compiled, inlined
-from ....curves.cubics import hidden_extrema, square
+from ....curves.cubics import square
 from ....intrinsics import borrowed, keep_alive
 from ....types import FloatArray, IntArray
+from ..extrema import hidden_extrema
 from .harmony import end_jump
 from .nearness import own_form, reduced, squares_of_two
 from .run_nodes import AXIS, FIXED, FREE, HELD, CubicRun, RunArrays, sides

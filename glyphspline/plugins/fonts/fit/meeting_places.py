@@ -12,8 +12,9 @@ import numpy as np
 
 from ....arrays import put
 from ....compiled import compiled, inlined
-from ....curves.cubics import hidden_extrema, length
+from ....curves.cubics import length
 from ....types import FloatArray, IntArray
+from ..extrema import hidden_extrema
 from .harmony import FLAT, end_curvature
 from .nearness import own_form, reduced, squares_of_two
 from .run_nodes import CubicRun, RunArrays

@@ -9,11 +9,12 @@ import numpy as np
 
 from ....arrays import put
 from ....compiled import compiled
-from ....curves.cubics import directions, hidden_extrema
+from ....curves.cubics import directions
 from ....fitting.sharp.corners import NO_HANDLE, Joints, find_joints
 from ....fitting.sharp.settings import SharpSettings
 from ....outlines.segments import farthest_joint
 from ....types import BoolArray, FloatArray, IntArray
+from ..extrema import hidden_extrema
 from .gates import FitLimits, mixed, refused
 from .run_nodes import CubicRun, Guide
 

@@ -23,10 +23,10 @@ from ....curves.integrals import area
 from ....errors import GlyphsplineError
 from ....fitting.options import Options
 from ....fitting.results import GlyphResult
-from ....outlines.extrema import extremal_pieces
 from ....outlines.open_paths import are_open
 from ....outlines.outline import Contour, Outline
 from ....types import BoolArray, FloatArray, IntArray
+from ..extrema import extremal_pieces
 from ..read_back import Promise
 
 Flavour = Literal["otf", "ttf"]

@@ -9,11 +9,11 @@ import numpy as np
 
 from ....curves.comb import end_curvatures
 from ....curves.cubics import bernstein
-from ....outlines.extrema import extremal_places
 from ....outlines.outline import Contour
 from ....outlines.sampling import CORNER_ANGLE
 from ....outlines.segments import lasting
 from ....types import BoolArray, FloatArray, IntArray
+from ...fonts.extrema import extremal_places
 
 STEPS = 16
 """Steps a segment of the tables of length and turn."""

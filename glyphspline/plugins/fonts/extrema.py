@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..curves.bezier import evaluate, roots_inside, split
-from ..curves.fairness import swings
-from ..types import FloatArray
-from .outline import Contour
+from ...compiled import compiled
+from ...curves.bezier import evaluate, roots_inside, split
+from ...curves.fairness import swings
+from ...outlines.outline import Contour
+from ...types import FloatArray
 
 UNIT = 1e-3
 """Of the em: the height by which a curve rises to an extremum and falls again, or it is a wave as high as the default
@@ -88,3 +89,17 @@ def peaks(values: Sequence[float], height: float) -> list[int]:
     first, found = int(np.argmax(values)), np.empty(n + 1, dtype=np.int64)
     count = swings(np.array(values), n, first, first + n + 1, 1.0, 0.0, height, found)
     return [i % n for i in found[:count].tolist()]
+
+
+@compiled
+def hidden_extrema(cubic: FloatArray) -> int:
+    """The number of horizontal and vertical extrema inside a cubic (4, 2), between its ends."""
+    count = 0
+    for axis in range(2):
+        # The derivative's Bernstein coefficients, but for a factor.
+        a, b, c = cubic[1, axis] - cubic[0, axis], cubic[2, axis] - cubic[1, axis], cubic[3, axis] - cubic[2, axis]
+        if a * c < 0.0:
+            count += 1
+        elif b * (a + c) < 0.0 and b * b > a * c:
+            count += 1 if a * c == 0.0 else 2
+    return count

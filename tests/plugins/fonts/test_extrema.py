@@ -10,7 +10,7 @@ import pytest
 
 import glyphspline as gs
 from glyphspline.curves.bezier import evaluate
-from glyphspline.outlines.extrema import SHORTEST, UNIT, extremal_places, peaks, with_extrema
+from glyphspline.plugins.fonts.extrema import SHORTEST, UNIT, extremal_places, hidden_extrema, peaks, with_extrema
 from glyphspline.plugins.fonts.tables.font_file import to_font, write_font
 from glyphspline.plugins.fonts.tables.font_glyphs import ROUNDING, Flavour, fitting_tolerance
 from glyphspline.plugins.fonts.ufo_folder import write_ufo
@@ -188,3 +188,14 @@ def test_a_split_that_rounding_would_move_out_of_tolerance_is_left_out() -> None
         assert (summary.extrema, summary.beyond) == (added, ())
         assert summary.largest_error is not None
         assert summary.largest_error <= 1.0
+
+
+def test_hidden_extrema_are_the_derivatives_changes_of_sign_between_the_ends() -> None:
+    rng = np.random.default_rng(5)
+    for points in rng.integers(-4, 5, (500, 4, 2)).astype(float):
+        expected = 0
+        for a, b, c in np.diff(points, axis=0).T:
+            roots = np.roots([a - 2 * b + c, 2 * (b - a), a])
+            inside = roots[(np.abs(roots.imag) < 1e-9) & (roots.real > 1e-9) & (roots.real < 1 - 1e-9)].real
+            expected += len(inside) if len(inside) < 2 or np.ptp(inside) > 1e-6 else 0
+        assert hidden_extrema(points) == expected, points
