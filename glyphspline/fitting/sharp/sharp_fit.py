@@ -8,15 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ...curves.bspline import Spline
 from ...curves.pairing import SHARPNESS
 from ...curves.spline_beziers import spline_beziers
-from ...errors import PolygonError
-from ...interpolation.api import interpolate_each
-from ...interpolation.method import Method
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import ContourArrays, Polylines, offsets_of
 from ...outlines.segments import all_cubics
@@ -24,9 +22,10 @@ from ...types import BoolArray, FloatArray, IntArray, Views
 from ..faithful import Fits
 from ..first_good import first_good
 from ..ladders import RETRIES, SHARP_TRIES
-from ..measures import Columns, distance_columns
+from ..measures import distance_columns
 from ..options import Options
 from ..results import ConvertedContours
+from .arcs import Arcs, in_order, interpolated, solved_columns
 from .assembly import certify, put_together
 from .cutting import Chains, fit_contours, refit
 from .pieces import Pieces, chord_lengths
@@ -56,36 +55,17 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
     closed = np.ones(source.num_contours, dtype=np.bool_)
     polygons = Polylines(np.delete(pieces.vertices[:, 0], open_ends, axis=0), offsets_of(counts), closed)
     bounds, gaps = np.maximum.reduceat(fit.bounds, first), np.maximum.reduceat(fit.gaps, first)
-    arcs = np.flatnonzero(pieces.spans)
+    drawn = np.flatnonzero(pieces.spans)
     return ConvertedContours(
         source,
         fit.curves[0],
         polygons,
-        Views(len(arcs), fit.interpolations),
+        Views(len(drawn), fit.interpolations),
         fit.controls[0],
-        np.searchsorted(arcs, fit.offsets),
-        _solved_columns(fit) | distance_columns(gaps.tolist(), bounds.tolist(), tolerance),
+        np.searchsorted(drawn, fit.offsets),
+        solved_columns(fit.arcs, pieces, source.num_contours)
+        | distance_columns(gaps.tolist(), bounds.tolist(), tolerance),
     )
-
-
-def _solved_columns(fit: SharpFit) -> Columns:
-    """Of several arcs the worst counts, and the most iterations. In arcs of one span nothing is iterated."""
-    spans, first = fit.pieces.spans, fit.offsets[:-1]
-    segments = np.add.reduceat(np.maximum(spans, 1), first)
-    numbers = np.add.reduceat(np.where(spans > 0, 2 * spans + 4 * (1 - fit.pieces.closed), 2), first)
-    arcs: list[list[Interpolation]] = [[] for _ in first]
-    for q, arc in fit.splines.items():
-        arcs[fit.pieces.contour[q]].append(arc)
-    return {
-        "vertices": segments.tolist(),
-        "segments": segments.tolist(),
-        "numbers": numbers.tolist(),
-        "iterations": [max((arc.iterations for arc in own), default=None) for own in arcs],
-        "residual": [max((arc.max_error for arc in own), default=None) for own in arcs],
-        "converged": [all(arc.converged for arc in own) if own else None for own in arcs],
-        "rate_bound": [max((arc.rate_bound for arc in own), default=None) for own in arcs],
-        "fallbacks": [sum(arc.fallbacks for arc in own) if own else None for own in arcs],
-    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +75,7 @@ class SharpFit:
     Attributes:
         pieces: the lines and arcs of all contours.
         offsets: (C + 1,) where in ``pieces`` each contour begins.
-        splines: the interpolations of those arcs that have more than one span, by their piece.
+        arcs: those of more than one span.
         curves: the contours they make in each master, before rounding. controls: the control polygons of all arcs.
         bounds: (P,) certified distance of each piece from the source: of a plain outline as it is written, and of
             masters, unrounded, in the whole design space. gaps: (P,) the largest one seen; 0 for masters.
@@ -104,20 +84,25 @@ class SharpFit:
 
     pieces: Pieces
     offsets: IntArray
-    splines: dict[int, Interpolation]
+    arcs: Arcs
     curves: tuple[ContourArrays, ...]
     controls: tuple[Polylines, ...]
     bounds: FloatArray
     gaps: FloatArray
     regular: BoolArray
 
+    @cached_property
+    def splines(self) -> dict[int, Interpolation]:
+        """The interpolations of arcs of more than one span, by their piece."""
+        return dict(zip(self.arcs.piece.tolist(), self.arcs.results, strict=True))
+
     def interpolations(self) -> list[Interpolation]:
         """All arcs of a single master; one of a single span interpolates its two ends as it is."""
-        arcs = np.flatnonzero(self.pieces.spans).tolist()
+        drawn = np.flatnonzero(self.pieces.spans).tolist()
         first, points = self.controls[0].offsets.tolist(), self.controls[0].points
         return [
             self.splines[q] if q in self.splines else _single_span(points[i : i + 4])
-            for q, i in zip(arcs, first[:-1], strict=True)
+            for q, i in zip(drawn, first[:-1], strict=True)
         ]
 
 
@@ -177,16 +162,20 @@ def _certified(
 ) -> SharpFit:  # fmt: skip
     """The pieces with curves put through them, certified; ``same``: (P,) their numbers in the fit ``before``, or -1."""
     count, masters = len(chains.flipped), len(chains.cubics)
-    old = {} if before is None else {q: before.splines[n] for q, n in enumerate(same.tolist()) if n in before.splines}
-    splines = dict(sorted((old | _interpolated(pieces, same < 0, options)).items()))
-    knots = np.concatenate([np.empty(0), *(arc.spline.knots for arc in splines.values())])
-    stacked = np.concatenate([np.empty((0, 2 * masters)), *(arc.spline.control_points for arc in splines.values())])
-    controls, several, lengths = stacked.reshape(-1, masters, 2) * np.sqrt(masters), pieces.spans > 1, chords(pieces)
-    beziers = spline_beziers(controls, knots, pieces.spans[several], pieces.closed[several] > 0)
+    kept = np.flatnonzero(same >= 0)
+    parts = [*interpolated(pieces, same < 0, options)]
+    if before is not None:
+        now = np.full(len(before.pieces.spans), -1)
+        now[same[kept]] = kept
+        piece = now[before.arcs.piece]
+        parts.append(before.arcs.chosen(np.flatnonzero(piece >= 0), piece[piece >= 0]))
+    arcs, several, lengths = in_order(parts, masters), pieces.spans > 1, chords(pieces)
+    controls = arcs.controls.reshape(-1, masters, 2) * np.sqrt(masters)
+    beziers = spline_beziers(controls, arcs.knots, pieces.spans[several], pieces.closed[several] > 0)
     beziers, controls = (np.ascontiguousarray(each.swapaxes(0, 1)) for each in (beziers, controls))
     made = [put_together(pieces, v, count, beziers[v], controls[v], lengths) for v in range(masters)]
     curves, segments = tuple(each.curves for each in made), made[0].segments
-    known, kept = np.full(len(same), np.nan), same >= 0
+    known = np.full(len(same), np.nan)
     if before is not None:
         known[kept] = before.bounds[same[kept]]
     cubics = np.stack([all_cubics(curve.rounded(options.precision) if mixes is None else curve) for curve in curves])
@@ -197,37 +186,10 @@ def _certified(
     if before is not None:
         gaps[kept], regular[kept] = before.gaps[same[kept]], before.regular[same[kept]]
     offsets = np.searchsorted(pieces.contour, np.arange(count + 1))
-    return SharpFit(pieces, offsets, splines, curves, tuple(each.controls for each in made), bounds, gaps, regular)
+    return SharpFit(pieces, offsets, arcs, curves, tuple(each.controls for each in made), bounds, gaps, regular)
 
 
 def chords(pieces: Pieces) -> FloatArray:
     """(P,) distance of each piece's first two vertices, see :func:`.pieces.chord_lengths`."""
     first = pieces.starts[:-1]
     return chord_lengths(pieces.vertices[first + 1] - pieces.vertices[first])
-
-
-def _interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> dict[int, Interpolation]:
-    """The splines of more than one span among the (P,) pieces wanted. Lemma 2 has an interval at all their vertices."""
-    starts, masters = pieces.starts, pieces.vertices.shape[1]
-    size = np.sqrt(masters)  # one curve in R^{2K}, whose lengths are root mean squares of those in the masters
-    vertices = pieces.vertices.reshape(-1, 2 * masters) / size
-    tangents = pieces.tangents.swapaxes(1, 2).reshape(-1, 2, 2 * masters) / size
-    closed = pieces.closed > 0
-    arcs: dict[int, Interpolation] = {}
-    for which in (closed, (pieces.spans > 1) & ~closed):
-        chosen = np.flatnonzero(which & wanted).tolist()
-        if not chosen:
-            continue
-        ring = bool(closed[chosen[0]])
-        method = Method(
-            options.variant, margin=options.margin, residual_tolerance=options.solver_tolerance,
-            max_iterations=options.max_iterations, closed=ring,
-        )  # fmt: skip
-        polygons = [vertices[starts[q] : starts[q + 1]] for q in chosen]
-        found = interpolate_each(polygons, method, None, None if ring else [(t[0], t[1]) for t in tangents[chosen]], 1)
-        for q, one in zip(chosen, found, strict=True):
-            if isinstance(one, PolygonError):
-                one.contour = int(pieces.contour[q])
-                raise one
-            arcs[q] = one
-    return arcs

@@ -223,5 +223,6 @@ class Search:
         error, places, tangents = places_beside(
             samples.Q, samples.places, samples.lap, curve.numbers, k, closed, self.near
         )
-        points = tried_in(curve.numbers, self.masters, k, closed).p.swapaxes(0, 1)
-        return Piece(piece.contour, piece.joints, k, closed, points, places, tangents, error)
+        n = k + 1 - closed
+        points = curve.numbers[: 2 * self.masters * n].reshape(self.masters, n, 2)
+        return Piece(piece.contour, piece.joints, k, closed, points.swapaxes(0, 1), places, tangents, error)
