@@ -101,7 +101,7 @@ def interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> Iterato
         )  # fmt: skip
 
 
-def solved_columns(arcs: Arcs, pieces: Pieces, contours: int) -> Columns:
+def arc_columns(arcs: Arcs, pieces: Pieces, contours: int) -> Columns:
     """The measures of ``results.SOLVED`` for each contour: of several arcs the worst counts, and the most iterations.
 
     Those without an arc of more than one span have None: nothing is iterated there.

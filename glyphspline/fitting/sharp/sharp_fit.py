@@ -25,7 +25,7 @@ from ..ladders import RETRIES, SHARP_TRIES
 from ..measures import distance_columns
 from ..options import Options
 from ..results import ConvertedContours
-from .arcs import Arcs, in_order, interpolated, solved_columns
+from .arcs import Arcs, in_order, interpolated, arc_columns
 from .assembly import certify, put_together
 from .cutting import Chains, fit_contours, refit
 from .pieces import Pieces, chord_lengths
@@ -63,7 +63,7 @@ def _converted(source: ContourArrays, options: Options, tolerance: float, share:
         Views(len(drawn), fit.interpolations),
         fit.controls[0],
         np.searchsorted(drawn, fit.offsets),
-        solved_columns(fit.arcs, pieces, source.num_contours)
+        arc_columns(fit.arcs, pieces, source.num_contours)
         | distance_columns(gaps.tolist(), bounds.tolist(), tolerance),
     )
 
