@@ -25,7 +25,7 @@ from ..ladders import RETRIES, SHARP_TRIES
 from ..measures import distance_columns
 from ..options import Options
 from ..results import ConvertedContours
-from .arcs import Arcs, in_order, interpolated, arc_columns
+from .arcs import Arcs, arc_columns, in_order, interpolated
 from .assembly import certify, put_together
 from .cutting import Chains, fit_contours, refit
 from .pieces import Pieces, chord_lengths
