@@ -274,7 +274,7 @@ def graded(
                 x, y = samples[v, i + 1, 0] - samples[v, i, 0], samples[v, i + 1, 1] - samples[v, i, 1]
                 step[i] = length(x, y)
             for i in range(n):
-                long[i] = long[i] or step[i] > max(most * min(step[i - 1], step[(i + 1) % n]), tolerance)
+                long[i] = long[i] or step[i] > max(most * min(step[i - 1], step[i + 1 if i + 1 < n else 0]), tolerance)
         for i in range(n):
             count += 2 if long[i] else 1
         if count == n:

@@ -9,7 +9,7 @@ import numpy as np
 from ...compiled import compiled, inlined
 from ...curves.cubics import length, newton_step
 from ...types import FloatArray, IntArray
-from .spline_curve import SHORT, jet_of, tried_in
+from .spline_curve import SHORT, jet_of, tried_in, wrapped
 
 EXTRA = 6
 """Most points of the curve between two feet that count as rows of their own."""
@@ -96,7 +96,7 @@ def measure(
                     if known[1][v, j] > s0 or (known[1][v, j] == s0 and known[2][v, j] > at0):
                         s, at = known[1][v, j], known[2][v, j]
                 elif j > 0:  # as far on as the samples are apart
-                    at += length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1]) / h[_wrapped(s, k) + 2]
+                    at += length(Q[j, 0] - Q[j - 1, 0], Q[j, 1] - Q[j - 1, 1]) / h[wrapped(s, k) + 2]
                     at = min(at, 1.0)
                 end = k if not closed else (span[0] + k + 1 if j > 0 else k)
                 span[j], x[j], e[j], nx[j], ny[j] = _foot(c, k, s, at, s0, at0, end, Q[j, 0], Q[j, 1])
@@ -124,11 +124,11 @@ def _add_between(
     for j in range(n if closed else n - 1):
         i = j + 1 if j + 1 < n else 0
         last, step_x, step_y = span[i] + (k if i == 0 else 0), Q[i, 0] - Q[j, 0], Q[i, 1] - Q[j, 1]
-        spans, own = (last + x[i]) - (span[j] + x[j]), (x[i] - x[j]) * h[_wrapped(span[j], k) + 2]
+        spans, own = (last + x[i]) - (span[j] + x[j]), (x[i] - x[j]) * h[wrapped(span[j], k) + 2]
         if last != span[j]:
-            own = x[i] * h[_wrapped(last, k) + 2] - x[j] * h[_wrapped(span[j], k) + 2]
+            own = x[i] * h[wrapped(last, k) + 2] - x[j] * h[wrapped(span[j], k) + 2]
             for s in range(span[j], last):
-                own += h[_wrapped(s, k) + 2]
+                own += h[wrapped(s, k) + 2]
         square = step_x * step_x + step_y * step_y
         if square == 0.0 or own <= 0.0 or (spans <= 0.25 and own * own <= 4 * square):
             continue
@@ -136,14 +136,14 @@ def _add_between(
         wanted = max(4 * spans, own / (chord + near)) if spans > 0.25 or own > 2 * chord + 2 * near else 0.0
         pieces = min(int(wanted) + 2, EXTRA + 1)
         for r in range(1, pieces):
-            s, whole = span[j], h[_wrapped(span[j], k) + 2]
+            s, whole = span[j], h[wrapped(span[j], k) + 2]
             left = own * r / pieces + x[j] * whole
             while left > whole:
                 left -= whole
                 s += 1
-                whole = h[_wrapped(s, k) + 2]
+                whole = h[wrapped(s, k) + 2]
             at = left / whole
-            cx, cy, _, _, _, _ = jet_of(c, _wrapped(s, k), at)
+            cx, cy, _, _, _, _ = jet_of(c, wrapped(s, k), at)
             along = min(max(((cx - Q[j, 0]) * step_x + (cy - Q[j, 1]) * step_y) / square, 0.0), 1.0)
             ex, ey = Q[j, 0] + along * step_x - cx, Q[j, 1] + along * step_y - cy
             away = length(ex, ey)
@@ -174,7 +174,7 @@ def _measure_slip(c: FloatArray, h: FloatArray, k: int, rows: Rows) -> float:
         mean = total = nx = ny = 0.0
         for v in range(masters):
             s, x = rows.span[v, j], rows.x[v, j]
-            own = _wrapped(s, k)
+            own = wrapped(s, k)
             _, _, dx, dy, ax, ay = jet_of(c[v], own, x)
             at[v] = knots[own] + x * h[own + 2] + (s - own) // k * knots[k]
             size = length(dx, dy)
@@ -207,7 +207,7 @@ def _foot(
         of the point before it: the distance changes by the square of the step.
     """
     for _ in range(12):
-        cx, cy, dx, dy, ax, ay = jet_of(c, _wrapped(s, k), at)
+        cx, cy, dx, dy, ax, ay = jet_of(c, wrapped(s, k), at)
         speed = dx * dx + dy * dy
         if speed <= 0:
             at = min(at + 0.01, 1.0)
@@ -242,20 +242,10 @@ def _foot(
 @inlined
 def _distance(c: FloatArray, k: int, s: int, at: float, qx: float, qy: float) -> tuple[float, float, float]:
     """The distance of (qx, qy) from a point of the curve, positive on its left, and the normal there."""
-    cx, cy, dx, dy, _, _ = jet_of(c, _wrapped(s, k), at)
+    cx, cy, dx, dy, _, _ = jet_of(c, wrapped(s, k), at)
     ex, ey, speed = qx - cx, qy - cy, max(length(dx, dy), 1e-12)
     nx, ny, away = -dy / speed, dx / speed, length(ex, ey)
     return (away if ex * nx + ey * ny > 0 else -away), nx, ny
-
-
-@inlined
-def _wrapped(s: int, k: int) -> int:
-    """The span of a closed curve that span s is, up to a lap before the first one and two laps after it."""
-    if s >= k:
-        s -= k
-    if s >= k:
-        s -= k
-    return s if s >= 0 else s + k
 
 
 @compiled
@@ -266,7 +256,7 @@ def set_errors(rows: Rows, limit: float, errors: FloatArray) -> int:
         errors[s] = 0.0
     for v in range(len(rows.used)):
         for r in range(rows.used[v, 0]):
-            s = _wrapped(rows.span[v, r], k)
+            s = wrapped(rows.span[v, r], k)
             error = abs(rows.e[v, r])
             if r < rows.slip.shape[1]:
                 error += rows.lever[v, r] * abs(rows.slip[v, r])

@@ -132,6 +132,17 @@ def jet_of(c: FloatArray, s: int, x: float) -> tuple[float, float, float, float,
     return px, py, dx, dy, 2 * ax, 2 * ay
 
 
+@inlined
+def wrapped(s: int, k: int) -> int:
+    """The span of a closed curve that span s is, up to a lap before the first one and two laps after it. Divisions take
+    five times as long."""
+    if s >= k:
+        s -= k
+    if s >= k:
+        s -= k
+    return s if s >= 0 else s + k
+
+
 @compiled
 def curve_of(p: FloatArray, tips: FloatArray, closed: int) -> Curve:
     """A curve with vertices (K, n, 2), and if it is an arc with the tips (K, 2, 2) of its end handles."""

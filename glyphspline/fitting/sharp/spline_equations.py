@@ -21,7 +21,7 @@ from ...curves.cubics import jet, length
 from ...types import FloatArray, IntArray
 from .cubics import solve
 from .feet import EXTRA, Rows
-from .spline_curve import FREE, TIED, Curve, span_weights
+from .spline_curve import FREE, TIED, Curve, span_weights, wrapped
 
 LARGEST_RATIO = 4.0
 """Bound on the ratio of adjacent chords: up to 4 Lemma 2 has an interval everywhere."""
@@ -87,13 +87,13 @@ def differentiate(curve: Curve, system: System) -> None:
                 tip, end = (1, 0) if i == 0 else (k + 1, k + 2)
                 dx, dy = X[tip, 0] - X[end, 0], X[tip, 1] - X[end, 1]
             else:
-                s, at = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
+                s, at = (i, curve.t[i]) if curve.t[i] >= 0 else (wrapped(i - 1, k), curve.t[i] + 1)
                 _, _, dx, dy, _, _ = jet(curve.b[v], s, at)
             speed = max(length(dx, dy), 1e-12)
             frames[i, 0], frames[i, 1], frames[i, 2], frames[i, 3] = -dy / speed, dx / speed, dx / speed, dy / speed
         for s in range(k):
             for c in range(4):
-                i = (s - 1 + c) % k if closed else s - 1 + c
+                i = wrapped(s - 1 + c, k) if closed else s - 1 + c
                 exists = 0 <= i <= k
                 for r in range(4):
                     for axis in range(2):
@@ -106,7 +106,7 @@ def differentiate(curve: Curve, system: System) -> None:
             share[v] = knots_per_step(curve, v, i)
         shift_knot(curve, i, delta)
         for c in range(4):
-            s = (i + 1 - c) % k if closed else i + 1 - c
+            s = wrapped(i + 1 - c, k) if closed else i + 1 - c
             if 0 <= s < k:
                 span_weights(h, s, W)
                 for v in range(len(curve.X)):
@@ -138,7 +138,7 @@ def knots_per_step(curve: Curve, v: int, i: int) -> float:
 def shift_knot(curve: Curve, i: int, delta: float) -> None:
     """Move knot i of the intervals, and of their repetition around a closed curve."""
     k, h = curve.k, curve.h
-    h[(i - 1) % k + 2] += delta
+    h[wrapped(i - 1, k) + 2] += delta
     h[i + 2] -= delta
     for n in range(2 if curve.closed else 0):
         h[n], h[k + 2 + n] = h[k + n], h[2 + n]
@@ -177,7 +177,7 @@ def add_rows(
                 for w in range(8):
                     gram[s, u, w] = 0.0
         for r in range(rows.used[v, 0]):
-            s, x = span[r] % k, xs[r]
+            s, x = wrapped(span[r], k), xs[r]
             y = 1 - x
             B[0], B[1], B[2], B[3] = y * y * y, 3 * y * y * x, 3 * y * x * x, x * x * x
             own = e[r] / scale
@@ -287,7 +287,7 @@ def equations(curve: Curve, system: System, v: int, damping: float, weight: int,
             continue
         J = (1 / h[s + 1], -1 / h[s + 1] - 1 / h[s + 2], 1 / h[s + 2])
         for c in range(3):
-            i = (s - 1 + c) % k if closed else s - 1 + c
+            i = wrapped(s - 1 + c, k) if closed else s - 1 + c
             at = place[s + c] if closed or 0 < i < k else -1
             index[c] = 2 * at + 1
             slope[c] = J[c] * knots_per_step(curve, v, i) if at >= 0 else J[c]

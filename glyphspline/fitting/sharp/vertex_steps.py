@@ -27,6 +27,7 @@ from .spline_curve import (
     iterate,
     set_knots,
     tried_in,
+    wrapped,
 )
 from .spline_equations import add_rows, differentiate, knots_per_step, objective, solve_step, system_of
 
@@ -186,7 +187,7 @@ def _move_points(
         for axis in range(2):
             X[i + 1, axis] += nu * frames[i, axis] + sigma * frames[i, 2 + axis]
     for i in range(1 - closed, k):
-        s, x = (i, curve.t[i]) if curve.t[i] >= 0 else ((i - 1) % k, curve.t[i] + 1)
+        s, x = (i, curve.t[i]) if curve.t[i] >= 0 else (wrapped(i - 1, k), curve.t[i] + 1)
         y, across = 1 - x, 0.0
         for c in range(4):
             r = 2 * place[s + c]
