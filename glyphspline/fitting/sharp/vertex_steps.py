@@ -41,6 +41,9 @@ is given up. That ends 13 of some 580 fits that would pass, and saves a fifth of
 ENOUGH = 0.02
 """Distance of the vertices from the curve, in tolerances, that is enough for the next step."""
 
+WOBBLE = 1e-2
+"""Weight of a curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord."""
+
 OFF, SPANS_OFF = 1.3, 3
 """A fit is also given up if so many spans are off by this many tolerances after the first two steps: later ones shift
 distances from span to span. It saves a seventh of all steps. Fits of masters get nearer later, and take all steps."""
@@ -78,7 +81,10 @@ def move_vertices(
         hope *= STRIDES[min(m, 2)]
     if cold < np.inf:
         error = measure(samples, curve.c, curve.h, curve.closed, near, (False, rows.span, rows.x), rows)
-        wobble = _wobble_weight(curve.h, k)
+        total = 0.0
+        for m in range(k):
+            total += curve.h[m + 2]
+        wobble = WOBBLE * (total / k * (total / k) * (total / k))
     else:
         rounds = -1
     for m in range(rounds + 1):
@@ -123,16 +129,6 @@ def move_vertices(
             tips[v, 0, axis], tips[v, 1, axis] = curve.X[v, 1, axis], curve.X[v, k + 1, axis]
     keep_alive(owned)
     return error
-
-
-@compiled
-def _wobble_weight(h: FloatArray, k: int) -> float:
-    """Weight of a curve's wobble beside its distances: of the integral of (dκ/ds)², by the cube of the mean chord."""
-    total = 0.0
-    for s in range(k):
-        total += h[s + 2]
-    mean = total / k
-    return 1e-2 * (mean * mean * mean)
 
 
 @compiled
