@@ -155,12 +155,9 @@ class BatchedInterpolation(NamedTuple):
         count = len(offsets) - 1
         total = len(whole) - 6 * count
         # Where knots, parameters, bounds and control points of it begin, as laid_out has them.
-        u, ends = 2 * count + start, 0
-        t = u + total
-        if closed:
-            u, t = u + k, t + count
-        else:
-            ends = 2
+        u, t, ends = 2 * count + start + k, 3 * count + total + start, 0
+        if not closed:
+            u, t, ends = u - k, t - count, 2
         b, P = t + total + start, t + 3 * total - start + (start + ends * k) * d
         merged, own = NOTHING_MERGED, None if points is None else points[start:stop]
         if n < stop - start:

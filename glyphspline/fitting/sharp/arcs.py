@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...interpolation.batch import interpolate_batch
-from ...interpolation.method import Method
 from ...interpolation.polygon import NO_TANGENTS, Polygons, explain
 from ...interpolation.result import Interpolation
 from ...outlines.contour_arrays import members_of, offsets_of
 from ...types import BoolArray, FloatArray, IntArray
+from ..closed_curves import method_for
 from ..measures import Columns
 from ..options import Options
 from .pieces import Pieces
@@ -23,17 +24,17 @@ class Arcs(NamedTuple):
 
     Attributes:
         piece: (A,) the piece of each, ascending. results: of the interpolation; they are not read here.
-        knots: of all, and first: (A + 1,) where those of each begin. controls: (·, 2K) the control points, and begin:
-            (A + 1,) where those of each begin.
+        knots: of all, with knot_offsets: (A + 1,) where those of each begin. controls: (·, 2K) the control points, with
+            control_offsets: likewise.
         iterations, residuals, converged, rates, fallbacks: (A,) as in the results.
     """
 
     piece: IntArray
     results: list[Interpolation]
     knots: FloatArray
-    first: IntArray
+    knot_offsets: IntArray
     controls: FloatArray
-    begin: IntArray
+    control_offsets: IntArray
     iterations: IntArray
     residuals: FloatArray
     converged: BoolArray
@@ -42,11 +43,13 @@ class Arcs(NamedTuple):
 
     def chosen(self, which: IntArray, piece: IntArray) -> Arcs:
         """Some of them, which belong to other pieces now."""
-        (knots, first), (controls, begin) = members_of(self.first, which), members_of(self.begin, which)
+        knots, knot_offsets = members_of(self.knot_offsets, which)
+        controls, control_offsets = members_of(self.control_offsets, which)
         results = [self.results[k] for k in which.tolist()]
         return Arcs(
-            piece, results, self.knots[knots], first, self.controls[controls], begin, self.iterations[which],
-            self.residuals[which], self.converged[which], self.rates[which], self.fallbacks[which],
+            piece, results, self.knots[knots], knot_offsets, self.controls[controls], control_offsets,
+            self.iterations[which], self.residuals[which], self.converged[which], self.rates[which],
+            self.fallbacks[which],
         )  # fmt: skip
 
 
@@ -58,11 +61,11 @@ def in_order(parts: Iterable[Arcs], masters: int) -> Arcs:
         none, no_number, np.empty(0, dtype=np.bool_), no_number, none,
     )  # fmt: skip
     columns: list[Any] = [*zip(start, *parts, strict=True)]
-    piece, _, knots, first, controls, begin, *rest = columns
+    piece, results, knots, knot_offsets, controls, control_offsets, *rest = columns
     whole = Arcs(
-        np.concatenate(piece), [one for part in columns[1] for one in part], np.concatenate(knots),
-        offsets_of(np.concatenate([np.diff(each) for each in first])), np.concatenate(controls),
-        offsets_of(np.concatenate([np.diff(each) for each in begin])), *map(np.concatenate, rest),
+        np.concatenate(piece), [one for part in results for one in part], np.concatenate(knots),
+        offsets_of(np.concatenate([np.diff(each) for each in knot_offsets])), np.concatenate(controls),
+        offsets_of(np.concatenate([np.diff(each) for each in control_offsets])), *map(np.concatenate, rest),
     )  # fmt: skip
     order = np.argsort(whole.piece)
     return whole.chosen(order, whole.piece[order])
@@ -82,10 +85,7 @@ def interpolated(pieces: Pieces, wanted: BoolArray, options: Options) -> Iterato
         chosen = np.flatnonzero(wanted & (closed if ring else (pieces.spans > 1) & ~closed))
         if len(chosen) == 0:
             continue
-        method = Method(
-            options.variant, margin=options.margin, residual_tolerance=options.solver_tolerance,
-            max_iterations=options.max_iterations, closed=ring,
-        )  # fmt: skip
+        method = replace(method_for(options, "knot"), closed=ring)
         own, offsets = members_of(starts, chosen)
         polygons = Polygons(vertices[own], offsets, tangents=NO_TANGENTS if ring else tangents[chosen])
         found = interpolate_batch(polygons, method, 1)

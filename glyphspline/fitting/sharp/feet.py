@@ -269,9 +269,9 @@ def set_errors(rows: Rows, limit: float, errors: FloatArray) -> int:
 @compiled
 def places_beside(
     samples: FloatArray, known: FloatArray, lap: float, numbers: FloatArray, k: int, closed: int, near: float
-) -> tuple[float, FloatArray, FloatArray]:  # fmt: skip
-    """The largest distance of a curve; the places of the outline beside its knots, from the feet of the samples in the
-    first master; and (K, 2, 2) the end tangents of an arc, derivatives by chord length.
+) -> tuple[float, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """The largest distance of a curve; (K, n, 2) its vertices; the places of the outline beside its knots, from the
+    feet of the samples in the first master; and (K, 2, 2) the end tangents of an arc, derivatives by chord length.
 
     Args:
         samples, near: see :func:`measure`. known, lap: the places of samples, see :class:`Samples`.
@@ -296,11 +296,11 @@ def places_beside(
             for axis in range(2):
                 tangents[v, 0, axis] = 3 * (tips[v, 0, axis] - p[v, 0, axis]) / h[2]
                 tangents[v, 1, axis] = 3 * (p[v, k, axis] - tips[v, 1, axis]) / h[k + 1]
-        return worst, places, tangents
+        return worst, p, places, tangents
     for i in range(1, k):
         if places[i] < places[0]:
             places[i] += lap
     back = lap if places[0] >= lap else 0.0
     for i in range(k):
         places[i] -= back
-    return worst, places, tangents
+    return worst, p, places, tangents

@@ -92,7 +92,7 @@ def chord(p: FloatArray, i: int, j: int) -> float:
 
 
 class Tried(NamedTuple):
-    """A curve that a search tries: views of one array, which is handed to compiled functions in a fifth of the time.
+    """A curve that a search tries: views of one array, as Numba takes as long for each array that it hands over.
 
     Attributes:
         p: (K, n, 2) its vertices. tips: (K, 2, 2) of an arc's end handles; undefined for a closed curve.
@@ -134,8 +134,7 @@ def jet_of(c: FloatArray, s: int, x: float) -> tuple[float, float, float, float,
 
 @inlined
 def wrapped(s: int, k: int) -> int:
-    """The span of a closed curve that span s is, up to a lap before the first one and two laps after it. Divisions take
-    five times as long."""
+    """The span of a closed curve that span s is, up to a lap before the first one and two laps after it."""
     if s >= k:
         s -= k
     if s >= k:

@@ -220,9 +220,7 @@ class Search:
     def piece(self, piece: Piece, curve: TriedCurve) -> Piece:
         """The curve in the place of a piece."""
         samples, k, closed = self.samples, curve.spans, self.closed
-        error, places, tangents = places_beside(
+        error, points, places, tangents = places_beside(
             samples.Q, samples.places, samples.lap, curve.numbers, k, closed, self.near
         )
-        n = k + 1 - closed
-        points = curve.numbers[: 2 * self.masters * n].reshape(self.masters, n, 2)
         return Piece(piece.contour, piece.joints, k, closed, points.swapaxes(0, 1), places, tangents, error)

@@ -82,9 +82,10 @@ def move_vertices(
     if cold < np.inf:
         error = measure(samples, curve.c, curve.h, curve.closed, near, (False, rows.span, rows.x), rows)
         total = 0.0
-        for m in range(k):
-            total += curve.h[m + 2]
-        wobble = WOBBLE * (total / k * (total / k) * (total / k))
+        for s in range(k):
+            total += curve.h[s + 2]
+        mean = total / k
+        wobble = WOBBLE * (mean * mean * mean)
     else:
         rounds = -1
     for m in range(rounds + 1):

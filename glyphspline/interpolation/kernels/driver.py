@@ -40,7 +40,7 @@ def interpolate(
     """Interpolate polygons k0 to k1 - 1 into the arrays of :func:`.room_for`; returns their residuals end to end.
 
     The fields of :class:`.Polygons` come one by one, the rule as :attr:`.Method.numbers`: Numba would take named tuples
-    apart in the time of four passes over 20 vertices.
+    apart in the time of three passes over 20 vertices.
     """
     polygons = borrowed(Polygons(points, offsets, knots, tangents, held, by_knot))
     rule = rule_of(borrowed(rule_in_numbers))
